@@ -1,0 +1,42 @@
+# Options of the build, and what every target of ours is compiled with.
+
+option(PERCALE_BUILD_RENDER "Build the OpenGL renderer (needs epoxy, libpng, and EGL or GLFW)" ${PROJECT_IS_TOP_LEVEL})
+option(PERCALE_BUILD_APPS "Build the program percale (needs the renderer, GLFW, Dear ImGui, CLI11)" ${PROJECT_IS_TOP_LEVEL})
+option(PERCALE_BUILD_BENCH "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
+option(PERCALE_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(PERCALE_WERROR "Warnings are errors" OFF)
+set(PERCALE_SANITIZE "" CACHE STRING "Sanitizers to build with, such as address,undefined")
+option(PERCALE_COVERAGE "Record which lines run" OFF)
+set(PERCALE_PARALLEL "tbb" CACHE STRING "Back end of the parallel loop: tbb, std (plain threads) or serial")
+set_property(CACHE PERCALE_PARALLEL PROPERTY STRINGS tbb std serial)
+
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+if(PROJECT_IS_TOP_LEVEL)
+  find_program(PERCALE_CCACHE ccache)
+  if(PERCALE_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${PERCALE_CCACHE})
+  endif()
+endif()
+
+# What all our targets share. -ffp-contract=off keeps results equal to the bit between instruction
+# sets; the other flags let loops over arrays vectorise and change no result.
+add_library(percale_flags INTERFACE)
+target_compile_features(percale_flags INTERFACE cxx_std_20)
+if(MSVC)
+  target_compile_options(percale_flags INTERFACE /W4 /permissive- /utf-8 /fp:precise $<$<BOOL:${PERCALE_WERROR}>:/WX>)
+  target_compile_definitions(percale_flags INTERFACE _USE_MATH_DEFINES NOMINMAX)
+else()
+  target_compile_options(percale_flags INTERFACE
+    -Wall -Wextra -Wshadow -Wnon-virtual-dtor -ffp-contract=off -fno-math-errno -fno-trapping-math
+    $<$<BOOL:${PERCALE_WERROR}>:-Werror>)
+endif()
+if(PERCALE_SANITIZE)
+  target_compile_options(percale_flags INTERFACE -fsanitize=${PERCALE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(percale_flags INTERFACE -fsanitize=${PERCALE_SANITIZE})
+endif()
+if(PERCALE_COVERAGE)
+  target_compile_options(percale_flags INTERFACE --coverage -fprofile-update=atomic)
+  target_link_options(percale_flags INTERFACE --coverage)
+endif()

@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// Writers for meshes and for caches of many frames. Every file appears whole or not at all: it is
+/// written beside its place and renamed when finished.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "percale/diagnostic.h"
+#include "percale/world.h"
+
+namespace percale {
+
+/// Takes the frames of one run and writes them by the extension of `file`:
+///   .csv  one table: frame,cloth,vertex,x,y,z with 17 significant digits
+///   .obj  .ply  one mesh per frame, numbered name_0001.obj when there is more than one frame
+///   .pc2  PointCache2: all frames in one file, and the mesh beside it as FILE.obj
+/// Several cloths become one mesh, cloth after cloth.
+class CacheWriter {
+ public:
+  /// Opens a writer, or says why not: unknown extension, folder missing or not writable.
+  /// `frameSeconds` is the time between two written frames [s], which .pc2 records.
+  static Result<CacheWriter> Open(const std::filesystem::path& file, double frameSeconds);
+
+  ~CacheWriter();  ///< Without Finish: removes what was begun.
+  CacheWriter(CacheWriter&&) noexcept;
+  CacheWriter& operator=(CacheWriter&&) noexcept;
+
+  /// Appends the state of `world` as frame number `frame`.
+  Status Add(const World& world, int frame);
+  /// Puts the files in their places; returns their names.
+  Result<std::vector<std::filesystem::path>> Finish();
+
+ private:
+  struct Impl;
+  explicit CacheWriter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What a cache or mesh file holds, for `percale info`.
+struct CacheInfo {
+  std::string format;   ///< "PointCache2", "Wavefront OBJ", ...
+  int frames = 0;
+  int vertices = 0;     ///< Per frame.
+  int triangles = 0;    ///< 0 where the format has none.
+  double frameSeconds = 0;
+  Vec3 boxMin, boxMax;  ///< Over all frames [m].
+};
+Result<CacheInfo> ReadCacheInfo(const std::filesystem::path& file);
+
+}  // namespace percale

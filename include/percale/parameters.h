@@ -1,0 +1,101 @@
+#pragma once
+/// \file
+/// Every parameter of a scene, described once. From this table come the loader's checks, `--set`,
+/// the JSON schema, the viewer's sliders and tooltips, and the reference page.
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "percale/diagnostic.h"
+#include "percale/scene.h"
+
+namespace percale {
+
+enum class ValueKind {
+  Number,      ///< double
+  Integer,     ///< double holding a whole number
+  Boolean,     ///< bool
+  Choice,      ///< string, one of `choices`
+  Text,        ///< string
+  Vector,      ///< Vec3, in JSON an array of three numbers; `min` and `max` hold for each component
+  GridPoints,  ///< vector<GridPoint>, in JSON an array of [i, j]
+};
+
+using Value = std::variant<double, bool, std::string, Vec3, std::vector<GridPoint>>;
+
+/// What a change of the parameter does to a running World.
+enum class Effect {
+  Live,     ///< Acts at once, the state is kept.
+  Rebuild,  ///< The cloth is another one: it starts anew.
+};
+
+struct Parameter {
+  std::string_view group;  ///< "cloth", "sphere", ...: the key of the object that holds it.
+  std::string_view name;   ///< "ks": its key there.
+  std::string_view label;  ///< "Spring constant": for panels.
+  ValueKind kind;
+  std::string_view unit;  ///< "N/m"; empty for a pure number.
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool minExclusive = false;  ///< `min` itself is out of range.
+  bool required = false;      ///< A scene file must state it.
+  double typicalMin = 0;      ///< Range of a slider; equal ends: no typical range.
+  double typicalMax = 0;
+  bool logarithmic = false;  ///< The slider's scale.
+  std::string_view help;     ///< One sentence with typical values.
+  std::span<const std::string_view> choices = {};
+  Effect effect = Effect::Live;
+  /// Reads and writes it in object `index` of its group; the index is ignored where the group is a
+  /// single object. `set` takes a value that `CheckValue` accepts.
+  Value (*get)(const Scene&, std::size_t index) = nullptr;
+  void (*set)(Scene&, std::size_t index, const Value&) = nullptr;
+};
+
+/// A kind of object in a scene file.
+struct ParameterGroup {
+  std::string_view name;
+  bool isArray;   ///< A file may hold several, and `get`/`set` take an index.
+  bool required;  ///< A file must hold at least one.
+  std::string_view help;
+  std::size_t (*count)(const Scene&);
+  void (*resize)(Scene&, std::size_t);  ///< Appends default objects or drops the last ones.
+};
+
+/// All parameters, group by group, in the order of the reference page.
+std::span<const Parameter> Parameters();
+std::span<const ParameterGroup> ParameterGroups();
+
+/// The group or parameter of that name, or null.
+const ParameterGroup* FindGroup(std::string_view name);
+const Parameter* FindParameter(std::string_view group, std::string_view name);
+
+/// The value that an object of the group has when nothing is said.
+Value DefaultValue(const Parameter& parameter);
+
+/// What is wrong with `value` for `parameter` ("expected a number >= 0 N/m, got -5"), or nothing.
+std::optional<std::string> CheckValue(const Parameter& parameter, const Value& value);
+
+/// "a number >= 0 N/m", "one of exact, linear, powers, brute", ...
+std::string DescribeExpected(const Parameter& parameter);
+
+/// The value as JSON text, numbers with the fewest digits that read back the same.
+std::string FormatValue(const Value& value);
+
+/// Applies one assignment "PATH=VALUE" of a command line, VALUE in JSON or a bare word:
+/// "cloth.ks=500" (every cloth), "cloth.1.ks=500" (the second), "wind.velocity=[2,0,0]".
+/// The result says which file-style paths ("/cloth/0/ks") were set.
+Result<std::vector<std::string>> ApplyAssignment(Scene& scene, std::string_view assignment);
+
+/// Everything wrong with a scene as a whole: each value against its range, and what concerns
+/// several values (pins outside the grid, a grid beyond memory, motions of unknown cloths).
+/// Warnings name settings that cannot go well: ks above the stable limit, thickness above the
+/// spacing, density 0, each with the largest sensible value.
+Diagnostics CheckScene(const Scene& scene);
+
+}  // namespace percale

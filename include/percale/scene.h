@@ -1,0 +1,125 @@
+#pragma once
+/// \file
+/// A scene: plain data, exactly what a scene file says. The default, unit and range of each value
+/// stand beside it; the same facts for programs are in percale/parameters.h.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "percale/vec3.h"
+
+namespace percale {
+
+/// A point of a cloth's grid: column i along the width, row j along the height.
+struct GridPoint {
+  int i = 0, j = 0;
+  friend bool operator==(const GridPoint&, const GridPoint&) = default;
+};
+
+enum class Engine { Springs };
+enum class Orientation { Horizontal = 0, Vertical = 1 };
+/// How a point's box becomes a bucket of the spatial map. The course's write-up proposes `Linear`
+/// (7x + 5y + 3z) and `Powers` (x^6 + y^4 + z^2), which let boxes share a bucket; `Exact` keeps one
+/// bucket per box; `Brute` compares every point with every other.
+enum class HashFunction { Exact, Linear, Powers, Brute };
+/// Where a point that crossed a plane is put: on its trajectory just above the plane, above its
+/// foot on the plane, or back where it was.
+enum class PlaneResponse { Interpolate, Offset, Hold };
+/// Which tangents a cloth is drawn with: the course's constant (1, 0, 0), or along growing u.
+enum class Tangents { Constant, FromUv };
+
+struct ClothSettings {
+  double width = 1;                ///< Extent [m], > 0.
+  double height = 1;               ///< Extent [m], > 0.
+  int numWidthPoints = 50;         ///< Grid points along the width, >= 2.
+  int numHeightPoints = 50;        ///< Grid points along the height, >= 2.
+  double thickness = 0.0095;       ///< Points of cloth keep 2 * thickness apart [m], >= 0.
+  Orientation orientation = Orientation::Horizontal;  ///< Lies at y = 1 over x, z; or stands in x, y.
+  Vec3 origin;                     ///< Moves the whole sheet [m].
+  std::vector<GridPoint> pinned;   ///< Immovable points.
+  bool enableStructural = true;    ///< Springs to the left and upper neighbours.
+  bool enableShearing = true;      ///< Springs to the upper left and upper right neighbours.
+  bool enableBending = true;       ///< Springs to the second neighbours left and up.
+  double damping = 0.2;            ///< Share of the velocity lost per step [%], 0..100.
+  double density = 150;            ///< Areal density [kg/m^2], >= 0.
+  double ks = 5000;                ///< Spring constant [N/m], >= 0.
+  int seed = 184;                  ///< Of the vertical sheet's random z.
+};
+
+struct SphereSettings {
+  Vec3 origin;            ///< Centre [m].
+  double radius = 0.2;    ///< [m], > 0.
+  double friction = 0.3;  ///< Share of the correction that is withheld, 0..1.
+};
+
+struct PlaneSettings {
+  Vec3 point;             ///< Any point of the plane [m].
+  Vec3 normal{0, 1, 0};   ///< Not zero; need not have length 1.
+  double friction = 0.5;  ///< Share of the correction that is withheld, 0..1.
+};
+
+/// Carries some pins of one cloth along a straight line: at rest before `start`, displaced by
+/// `displacement` from `end` on, smoothly in between. Several motions of a pin add up.
+struct PinMotion {
+  int cloth = 0;                  ///< Index of the cloth in the scene.
+  std::vector<GridPoint> points;  ///< Pinned points that move; none: all of the cloth's pins.
+  double start = 0;               ///< [s]
+  double end = 1;                 ///< [s], > start.
+  Vec3 displacement;              ///< [m]
+};
+
+/// A viscous wind after Provot 1995, section 3.2: each point feels
+/// drag * area * (n . (wind - velocity)) n, n the cloth's unit normal.
+struct WindSettings {
+  Vec3 velocity;           ///< Of the air [m/s].
+  double drag = 0;         ///< [kg/(m^2 s)], >= 0; 0: still air that resists nothing.
+  double gustiness = 0;    ///< The speed swings by this share of itself, 0..1.
+  double gustPeriod = 1;   ///< [s], > 0.
+};
+
+struct SimulationSettings {
+  Engine engine = Engine::Springs;
+  int framesPerSecond = 90;   ///< >= 1.
+  int stepsPerFrame = 30;     ///< >= 1.
+  Vec3 gravity{0, -9.8, 0};   ///< [m/s^2]
+  bool selfCollision = true;  ///< Points of cloth keep apart, within a cloth and between cloths.
+  HashFunction hash = HashFunction::Exact;
+  PlaneResponse planeResponse = PlaneResponse::Interpolate;
+};
+
+/// Where the picture is taken from. By default the camera sees the cloth as the course does.
+struct CameraSettings {
+  bool automatic = true;        ///< Ignore the rest: target and distance follow from the cloths.
+  Vec3 target;                  ///< Point looked at [m].
+  double distance = 1.8;        ///< From the target [m], > 0.
+  double azimuth = 0;           ///< Turn about +y [degree]; 0 looks along -z.
+  double elevation = 0;         ///< Above the horizon [degree], -89..89.
+};
+
+struct LookSettings {
+  std::string shader = "Wireframe";  ///< Name of a file shaders/NAME.frag.
+  Vec3 color{1, 1, 1};               ///< Base colour of cloths and spheres, 0..1 each.
+  double normalScaling = 2;          ///< Bump strength.
+  double heightScaling = 0.1;        ///< Displacement strength.
+  Tangents tangents = Tangents::Constant;
+};
+
+struct Scene {
+  std::string name;  ///< The file's path as given, for messages.
+  SimulationSettings simulation;
+  std::vector<ClothSettings> cloths;
+  std::vector<SphereSettings> spheres;
+  std::vector<PlaneSettings> planes;
+  std::vector<PinMotion> pinMotions;
+  WindSettings wind;
+  CameraSettings camera;
+  LookSettings look;
+  bool planesFirst = false;  ///< Colliders act in file order: all planes before all spheres, or after.
+
+  double TimeStep() const {  ///< Of one step [s].
+    return 1.0 / (double(simulation.framesPerSecond) * double(simulation.stepsPerFrame));
+  }
+};
+
+}  // namespace percale

@@ -1,0 +1,31 @@
+#pragma once
+/// \file
+/// Scene files (JSON). The format is that of the course, with more keys.
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "percale/diagnostic.h"
+#include "percale/scene.h"
+
+namespace percale {
+
+/// Where each value of a loaded scene comes from, by its path ("/cloth/0/ks"). A path that is not
+/// in the map has its default.
+using Origins = std::map<std::string, Place>;
+
+/// Reads a scene file. On failure every problem of the file, each with its place; never throws for
+/// bad input. `origins`, if given, is filled with the place of each value that the file states.
+Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins = nullptr);
+
+/// The same for a text in memory; `name` stands for the file in messages.
+Result<Scene> ParseScene(const std::string& text, const std::string& name, Origins* origins = nullptr);
+
+/// The scene as JSON text that `ParseScene` reads back to the same scene; states every parameter.
+std::string FormatScene(const Scene& scene);
+
+/// The JSON schema (draft 2020-12) of scene files, from the parameter table.
+std::string SceneSchema();
+
+}  // namespace percale

@@ -1,0 +1,121 @@
+#pragma once
+/// \file
+/// `World` runs a scene. It is the only class that a user of the library needs:
+///
+///     auto scene = percale::LoadScene("scene/pinned2.json");
+///     percale::World world(*scene);
+///     world.Step();
+///     std::span<const percale::Vec3> x = world.Cloth(0).positions();
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "percale/scene.h"
+
+namespace percale {
+
+/// The stages of a frame, in order. The same names stand in the code, in reports and in the viewer.
+enum class Stage {
+  CheckInput,
+  MoveColliders,
+  ApplyForces,
+  Predict,
+  FindContacts,
+  Solve,
+  LimitStrain,
+  FinishStep,
+};
+inline constexpr int kStageCount = 8;
+std::string_view StageName(Stage stage);
+
+/// Why a simulation had to stop.
+struct Divergence {
+  std::int64_t step = 0;  ///< The first step after which a position was out of bounds or not a number.
+  int cloth = 0;
+  int vertex = 0;
+  std::string cause;   ///< "ks = 1e5 N/m is above the stable limit of 1459 N/m at this density and step"
+  std::string remedy;  ///< "lower ks below ..., or raise simulation.steps_per_frame to ..."
+};
+
+/// What one frame did.
+struct StepReport {
+  int frame = 0;            ///< Frames since the start, this one included.
+  std::int64_t step = 0;    ///< Steps since the start.
+  double time = 0;          ///< Simulated time [s].
+  std::array<double, kStageCount> stageSeconds{};  ///< Wall-clock time spent, by Stage [s].
+  double kineticEnergy = 0;    ///< [J]
+  double greatestStretch = 0;  ///< Greatest length over rest length of all springs.
+  double greatestMove = 0;     ///< Farthest way of a point over this frame [m].
+  std::int64_t selfContacts = 0;     ///< Pairs of cloth points pushed apart, summed over the steps.
+  std::int64_t colliderContacts = 0; ///< Points put back by a collider, summed over the steps.
+  std::int64_t limitedSprings = 0;   ///< Springs shortened by the strain limit, summed over the steps.
+  bool atRest = false;  ///< No point moved more than 1 mm over a frame, for 30 frames on end.
+  std::optional<Divergence> divergence;  ///< Set: the state is the last good frame, stepping is over.
+};
+
+struct Triangle {
+  std::int32_t a = 0, b = 0, c = 0;
+};
+struct Edge {
+  std::int32_t a = 0, b = 0;
+};
+
+/// One cloth of a World. The spans stay valid until the World is changed or destroyed; their
+/// contents change with each Step.
+class ClothView {
+ public:
+  std::span<const Vec3> positions() const { return positions_; }      ///< [m], one per vertex.
+  std::span<const Vec3> velocities() const { return velocities_; }    ///< [m/s], one per vertex.
+  std::span<const Vec2> uv() const { return uv_; }                    ///< 0..1, one per vertex.
+  std::span<const Triangle> triangles() const { return triangles_; }  ///< Vertex indices.
+  std::span<const Edge> springs() const { return springs_; }          ///< Of the enabled kinds, in creation order.
+  std::span<const std::int32_t> pinned() const { return pinned_; }    ///< Vertex indices, ascending.
+
+ private:
+  friend class World;
+  std::span<const Vec3> positions_, velocities_;
+  std::span<const Vec2> uv_;
+  std::span<const Triangle> triangles_;
+  std::span<const Edge> springs_;
+  std::span<const std::int32_t> pinned_;
+};
+
+struct WorldOptions {
+  int threads = 0;  ///< 0: as many as the machine has cores. The result does not depend on it.
+};
+
+class World {
+ public:
+  /// `scene` must be one in which `CheckScene` finds no error (LoadScene returns no other).
+  explicit World(Scene scene, WorldOptions options = {});
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  /// Runs one frame: simulation.stepsPerFrame steps. After a divergence it does nothing more.
+  const StepReport& Step();
+  /// Back to the start, with the settings as they are now.
+  void Reset();
+  /// Takes changed settings. The state is kept where the cloths stay the same grids with the same
+  /// rest shape (everything but parameters of Effect::Rebuild); otherwise it starts anew.
+  /// Returns whether the state was kept. `scene` must pass CheckScene.
+  bool Apply(Scene scene);
+
+  const Scene& scene() const;
+  const StepReport& report() const;  ///< Of the last frame; zeros before the first.
+  int ClothCount() const;
+  ClothView Cloth(int index) const;  ///< 0 <= index < ClothCount().
+  /// A fingerprint of all positions, to the bit: equal runs have equal hashes.
+  std::uint64_t StateHash() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace percale
