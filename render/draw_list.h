@@ -1,0 +1,57 @@
+#pragma once
+/// \file
+/// One picture as plain data: what to draw, with which shader, seen from where. Made by SceneView
+/// without graphics, drawn by GlDevice.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/mat4.h"
+#include "render/shader_library.h"
+
+namespace percale {
+
+using Color = std::array<float, 4>;
+
+/// A surface, one array per attribute, in single precision as the card wants it.
+struct DrawMesh {
+  std::vector<float> positions;          ///< x y z per vertex [m].
+  std::vector<float> normals;            ///< x y z per vertex, unit.
+  std::vector<float> tangents;           ///< x y z per vertex, unit.
+  std::vector<float> uv;                 ///< u v per vertex.
+  std::vector<std::uint32_t> triangles;  ///< Three vertices each.
+  std::vector<std::uint32_t> lines;      ///< Two vertices each: the springs.
+  std::uint64_t shapeVersion = 0;        ///< Another number: positions or normals have changed.
+  std::uint64_t meshVersion = 0;         ///< Another number: anything else has changed, or the sizes.
+
+  std::size_t VertexCount() const { return positions.size() / 3; }
+};
+
+struct DrawItem {
+  enum class Primitive { Triangles, Lines };
+  std::shared_ptr<const DrawMesh> mesh;
+  Primitive primitive = Primitive::Triangles;
+  std::string shader;       ///< Name in the ShaderLibrary.
+  Color color{1, 1, 1, 1};  ///< u_color.
+  Mat4 model;               ///< u_model: world space from the mesh's.
+  bool pushBack = false;    ///< Lines of the same surface follow: leave them in front.
+};
+
+struct DrawList {
+  Color clearColor{0.25f, 0.25f, 0.25f, 1};
+  Mat4 viewProjection;                            ///< u_view_projection
+  Vec3 cameraPosition;                            ///< u_cam_pos
+  Vec3 lightPosition{0.5, 2, 2};                  ///< u_light_pos
+  Vec3 lightIntensity{3, 3, 3};                   ///< u_light_intensity
+  float normalScaling = 2;                        ///< u_normal_scaling
+  float heightScaling = 0.1f;                     ///< u_height_scaling
+  UniformValues uniforms;                         ///< Parameters that differ from the shader's defaults.
+  std::array<std::filesystem::path, 4> textures;  ///< Of u_texture_1..4; empty: the project's own.
+  std::vector<DrawItem> items;
+};
+
+}  // namespace percale

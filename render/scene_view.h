@@ -1,0 +1,76 @@
+#pragma once
+/// \file
+/// What is drawn of a World: the choices of a view, and the draw list made from both.
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "percale/scene.h"
+#include "percale/world.h"
+#include "render/camera.h"
+#include "render/draw_list.h"
+
+namespace percale {
+
+/// How to look at a scene.
+struct View {
+  LookSettings look;  ///< Shader, colour, scales, tangents.
+  OrbitCamera camera;
+  int sphereLatitudes = 40;                       ///< >= 2: rings of a drawn sphere, the course's -a.
+  int sphereLongitudes = 40;                      ///< >= 3: segments of a ring, the course's -o.
+  bool wireframe = false;                         ///< Draw the springs over the surface as well.
+  bool cloths = true;                             ///< Draw the cloths.
+  bool colliders = true;                          ///< Draw the spheres and planes.
+  UniformValues uniforms;                         ///< Parameters of shaders that differ from their defaults.
+  std::array<std::filesystem::path, 4> textures;  ///< PNG files for u_texture_1..4; empty: the project's own.
+
+  /// The view that a scene starts with: its look and its camera.
+  static View ForScene(const Scene& scene);
+};
+
+/// One cloth as it is to be drawn: the spans of a ClothView, or copies of them.
+struct ClothShape {
+  std::span<const Vec3> positions;
+  std::span<const Vec2> uv;
+  std::span<const Triangle> triangles;
+  std::span<const Edge> springs;
+};
+
+/// Turns a World into a draw list, and keeps what stays the same from one picture to the next.
+class SceneView {
+ public:
+  SceneView();
+  ~SceneView();
+  SceneView(SceneView&&) noexcept;
+  SceneView& operator=(SceneView&&) noexcept;
+
+  /// The draw list of a picture of that size [pixel, >= 1]. Valid until the next call.
+  const DrawList& Update(const World& world, const View& view, int width, int height);
+  /// The same from copies, for a World that runs on another thread: `cloths` in the scene's order.
+  const DrawList& Update(const Scene& scene, std::span<const ClothShape> cloths, const View& view, int width,
+                         int height);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Vertex normals, each the sum of its triangles' normals weighted by their areas, made unit;
+/// (0, 0, 1) where there is none. `positions` and `normals` hold x y z per vertex.
+void ComputeNormals(std::span<const float> positions, std::span<const Triangle> triangles, std::span<float> normals);
+
+/// Vertex tangents along growing u, at right angles to the normals; (1, 0, 0) where there is none.
+void ComputeTangents(std::span<const float> positions, std::span<const Vec2> uv, std::span<const float> normals,
+                     std::span<const Triangle> triangles, std::span<float> tangents);
+
+/// The unit sphere as a grid of `latitudes` x `longitudes` quads, with uv = (longitude, latitude) in
+/// 0..1 from the south pole up, its seam at -z (away from the course's camera), tangents along
+/// growing longitude.
+DrawMesh MakeSphereMesh(int latitudes, int longitudes);
+
+/// The square that stands for a plane: 4 m x 4 m around `point`, with uv 0..1.
+DrawMesh MakePlaneMesh(const Vec3& point, const Vec3& normal);
+
+}  // namespace percale
