@@ -15,20 +15,21 @@
 #include <string>
 #include <string_view>
 
+#include "percale/mesh.h"
 #include "percale/scene.h"
 
 namespace percale {
 
 /// The stages of a frame, in order. The same names stand in the code, in reports and in the viewer.
 enum class Stage {
-  CheckInput,
-  MoveColliders,
-  ApplyForces,
-  Predict,
-  FindContacts,
-  Solve,
-  LimitStrain,
-  FinishStep,
+  CheckInput,     ///< Once per frame: what changed, and what has to be prepared anew.
+  MoveColliders,  ///< Pins that move; then, once per step:
+  ApplyForces,    ///< springs, gravity, wind, and the integration of positions,
+  FindContacts,   ///< points of cloth that share a box,
+  SelfCollide,    ///< those closer than their thickness pushed apart,
+  Collide,        ///< points put out of spheres and planes,
+  LimitStrain,    ///< springs that are too long shortened;
+  FinishStep,     ///< once per frame: statistics, and positions handed to the reader.
 };
 inline constexpr int kStageCount = 8;
 std::string_view StageName(Stage stage);
@@ -56,13 +57,6 @@ struct StepReport {
   std::int64_t limitedSprings = 0;   ///< Springs shortened by the strain limit, summed over the steps.
   bool atRest = false;  ///< No point moved more than 1 mm over a frame, for 30 frames on end.
   std::optional<Divergence> divergence;  ///< Set: the state is the last good frame, stepping is over.
-};
-
-struct Triangle {
-  std::int32_t a = 0, b = 0, c = 0;
-};
-struct Edge {
-  std::int32_t a = 0, b = 0;
 };
 
 /// One cloth of a World. The spans stay valid until the World is changed or destroyed; their

@@ -1,0 +1,16 @@
+#pragma once
+/// \file
+/// The elements of a mesh, as indices of its vertices.
+
+#include <cstdint>
+
+namespace percale {
+
+struct Triangle {
+  std::int32_t a = 0, b = 0, c = 0;
+};
+struct Edge {
+  std::int32_t a = 0, b = 0;
+};
+
+}  // namespace percale

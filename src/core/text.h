@@ -1,0 +1,36 @@
+#pragma once
+/// \file
+/// Small things about text that several rooms need: numbers as text and back whatever the locale,
+/// quoting, and the nearest known word for "did you mean".
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace percale {
+
+/// The number with the fewest digits that read back the same, as JSON writes it: "0.1", "5000",
+/// "1e12". NaN and infinities give "NaN", "Infinity", "-Infinity", which are not JSON.
+std::string FormatNumber(double number);
+
+/// The largest number of `digits` significant digits that is at most `number`, which must be >= 0:
+/// for advice such as "at most 0.0102", which must hold when followed to the letter.
+double RoundDown(double number, int digits);
+
+/// Reads a number as JSON writes them, the whole of `text`; nothing if it is anything else, or
+/// beyond the range of double.
+std::optional<double> ParseNumber(std::string_view text);
+
+/// The text in double quotes as JSON writes it, control characters escaped. With `limit` > 0 at
+/// most that many bytes of the text (whole characters), then "...".
+std::string Quote(std::string_view text, std::size_t limit = 0);
+
+/// The word of `known` that is so near to `word` that it was probably meant, or empty. Capitals,
+/// '-' and '_' make no difference.
+std::string_view Nearest(std::string_view word, std::span<const std::string_view> known);
+
+/// " (did you mean `NEAREST`?)", or nothing where no word is near.
+std::string DidYouMean(std::string_view word, std::span<const std::string_view> known);
+
+}  // namespace percale

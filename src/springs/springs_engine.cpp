@@ -1,0 +1,475 @@
+#include "springs/springs_engine.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace percale::springs {
+namespace {
+
+constexpr double kStretchLimit = 1.1;       // of the rest length; Provot 1995, section 5
+constexpr double kBendingShare = 0.2;       // bending springs have this share of ks
+constexpr double kBoxesPerSpacing = 3;      // a box of the spatial map spans three spacings of the grid
+constexpr double kBound = 1e6;              // m; a cloth this far out has diverged
+constexpr int kPointsPerChunk = 4096;       // of loops over points; below it a second thread does not pay
+constexpr int kRowPointsPerChunk = 2048;    // of the forces, which cost more
+constexpr int kBucketPointsPerChunk = 1024;
+
+std::size_t Index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+std::uint64_t Power(std::int64_t base, int exponent) {
+  std::uint64_t result = 1;
+  for (int i = 0; i < exponent; ++i) result *= static_cast<std::uint64_t>(base);
+  return result;
+}
+
+/// A box index, kept where a 64-bit integer can hold it.
+std::int64_t BoxIndex(double coordinate, double size) {
+  return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / size), -1e15, 1e15));
+}
+
+}  // namespace
+
+SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> models, const Executor& executor,
+                             const Kernels& kernels)
+    : executor_(executor), kernels_(kernels) {
+  for (const ClothModel& model : models) {
+    Sheet sheet;
+    sheet.numWidth = model.numWidth;
+    sheet.numHeight = model.numHeight;
+    sheet.firstPoint = pointCount_;
+    pointCount_ += model.PointCount();
+    sheet.kinds.assign(Index(model.PointCount()), 0);
+    for (int kind = 0; kind < kSpringKinds; ++kind) {
+      const auto [di, dj] = kSpringSteps[kind];
+      sheet.rest[kind].assign(Index(model.PointCount()), 0);
+      for (int j = 0; j < model.numHeight; ++j) {
+        for (int i = 0; i < model.numWidth; ++i) {
+          if (i + di < 0 || i + di >= model.numWidth || j + dj < 0) continue;
+          const int p = j * model.numWidth + i;
+          sheet.kinds[Index(p)] |= static_cast<std::uint8_t>(1u << kind);
+          sheet.rest[kind][Index(p)] = Length(model.start[Index(p + dj * model.numWidth + di)] - model.start[Index(p)]);
+        }
+      }
+    }
+    sheet.rowsPerChunk = sheet.numHeight;
+    if (executor_.threads() > 1) {
+      sheet.rowsPerChunk = std::max(16, (kRowPointsPerChunk + sheet.numWidth - 1) / sheet.numWidth);
+    }
+    sheet.firstChunk = chunkCount_;
+    chunkCount_ += (sheet.numHeight + sheet.rowsPerChunk - 1) / sheet.rowsPerChunk;
+    start_.insert(start_.end(), model.start.begin(), model.start.end());
+    for (const std::int32_t pin : model.pinned) {
+      const Vec3 at = model.start[Index(pin)];
+      pins_.push_back({sheet.firstPoint + pin, at, at, at, 0, 0});
+    }
+    sheets_.push_back(std::move(sheet));
+  }
+
+  const std::size_t count = Index(pointCount_);
+  for (int axis = 0; axis < 3; ++axis) {
+    positions_[axis].resize(count);
+    previous_[axis].resize(count);
+  }
+  fixed_.assign(count, 0);
+  for (const PinnedPoint& pin : pins_) fixed_[Index(pin.point)] = 1;
+  longKinds_.assign(count + 8, 0);
+  boxKeys_.resize(count);
+  thickness_.resize(count);
+  map_.Reserve(pointCount_);
+  int widest = 0;
+  for (const Sheet& sheet : sheets_) widest = std::max(widest, sheet.numWidth);
+  scratchPerChunk_ = IntegrateScratch(widest);
+  integrateScratch_.assign(Index(chunkCount_) * Index(scratchPerChunk_), 0);
+  const int bucketChunks = pointCount_ / kBucketPointsPerChunk + 2;
+  bucketChunkEnds_.reserve(Index(bucketChunks));
+  bucketScratch_.resize(3 * (count + 8 * Index(bucketChunks)));
+  chunkCounts_.resize(Index(std::max({chunkCount_, bucketChunks, pointCount_ / kPointsPerChunk + 1})));
+  Configure(scene);
+  Reset();
+}
+
+void SpringsEngine::Configure(const Scene& scene) {
+  scene_ = scene;
+  dt_ = scene_.TimeStep();
+  double width = 0, height = 0;
+  greatestApart_ = 0;
+  for (std::size_t c = 0; c < sheets_.size(); ++c) {
+    const ClothSettings& cloth = scene_.cloths[c];
+    Sheet& sheet = sheets_[c];
+    for (int kind = 0; kind < kSpringKinds; ++kind) {
+      const bool bending = kind == static_cast<int>(SpringKind::TwoLeft) || kind == static_cast<int>(SpringKind::TwoUp);
+      sheet.stiffness[kind] =
+          !Enabled(cloth, static_cast<SpringKind>(kind)) ? 0 : bending ? kBendingShare * cloth.ks : cloth.ks;
+    }
+    sheet.mass =
+        cloth.width * cloth.height * cloth.density / (static_cast<double>(cloth.numWidthPoints) * cloth.numHeightPoints);
+    sheet.keep = 1 - cloth.damping / 100;
+    width = std::max(width, kBoxesPerSpacing * cloth.width / cloth.numWidthPoints);
+    height = std::max(height, kBoxesPerSpacing * cloth.height / cloth.numHeightPoints);
+    const auto first = thickness_.begin() + sheet.firstPoint;
+    std::fill(first, first + sheet.PointCount(), cloth.thickness);
+    greatestApart_ = std::max(greatestApart_, 2 * cloth.thickness);
+  }
+  boxSize_[0] = width;
+  boxSize_[1] = height;
+  boxSize_[2] = std::max(width, height);
+  bound_ = std::min(kBound, 0x1p50 * std::min(width, height));  // beyond it box indices would not be exact
+  if (scene_.wind.drag > 0) {
+    for (auto& axis : windForce_) axis.resize(Index(pointCount_));
+  }
+
+  pinMotionOf_.clear();
+  for (PinnedPoint& pin : pins_) {
+    pin.firstMotion = static_cast<int>(pinMotionOf_.size());
+    for (std::size_t m = 0; m < scene_.pinMotions.size(); ++m) {
+      const PinMotion& motion = scene_.pinMotions[m];
+      const Sheet& sheet = sheets_[Index(motion.cloth)];
+      const int vertex = pin.point - sheet.firstPoint;
+      if (vertex < 0 || vertex >= sheet.PointCount()) continue;
+      const bool named = std::any_of(motion.points.begin(), motion.points.end(), [&](const GridPoint& g) {
+        return g.j * sheet.numWidth + g.i == vertex;
+      });
+      if (named || motion.points.empty()) pinMotionOf_.push_back(static_cast<int>(m));
+    }
+    pin.motionCount = static_cast<int>(pinMotionOf_.size()) - pin.firstMotion;
+  }
+}
+
+void SpringsEngine::Reset() {
+  for (std::size_t p = 0; p < start_.size(); ++p) {
+    const double at[3] = {start_[p].x, start_[p].y, start_[p].z};
+    for (int axis = 0; axis < 3; ++axis) positions_[axis][p] = previous_[axis][p] = at[axis];
+  }
+  for (PinnedPoint& pin : pins_) pin.target = pin.previousTarget = pin.start;
+}
+
+/// Calls body(sheet, rowBegin, rowEnd, chunk) for chunks of rows of all sheets.
+template <class Body>
+void SpringsEngine::ForRowChunks(Body&& body) {
+  executor_.ForChunks(chunkCount_, [&](int chunk) {
+    std::size_t s = sheets_.size() - 1;
+    while (sheets_[s].firstChunk > chunk) --s;
+    Sheet& sheet = sheets_[s];
+    const int begin = (chunk - sheet.firstChunk) * sheet.rowsPerChunk;
+    body(sheet, begin, std::min(begin + sheet.rowsPerChunk, sheet.numHeight), chunk);
+  });
+}
+
+/// Calls body(begin, end, chunk) for chunks of all points.
+template <class Body>
+void SpringsEngine::ForPointChunks(Body&& body) {
+  const int chunks = (pointCount_ + kPointsPerChunk - 1) / kPointsPerChunk;
+  executor_.ForChunks(chunks, [&](int chunk) {
+    const int begin = chunk * kPointsPerChunk;
+    body(begin, std::min(begin + kPointsPerChunk, pointCount_), chunk);
+  });
+}
+
+std::int64_t SpringsEngine::SumChunkCounts(int chunks) const {
+  std::int64_t sum = 0;
+  for (int chunk = 0; chunk < chunks; ++chunk) sum += chunkCounts_[Index(chunk)];
+  return sum;
+}
+
+void SpringsEngine::MoveColliders(double time) {
+  if (pinMotionOf_.empty()) return;
+  for (PinnedPoint& pin : pins_) {
+    Vec3 offset;
+    for (int m = 0; m < pin.motionCount; ++m) {
+      const PinMotion& motion = scene_.pinMotions[Index(pinMotionOf_[Index(pin.firstMotion + m)])];
+      const double s = std::clamp((time - motion.start) / (motion.end - motion.start), 0.0, 1.0);
+      offset += motion.displacement * (s * s * (3 - 2 * s));
+    }
+    pin.previousTarget = pin.target;
+    pin.target = pin.start + offset;
+    positions_[0][Index(pin.point)] = pin.target.x;
+    positions_[1][Index(pin.point)] = pin.target.y;
+    positions_[2][Index(pin.point)] = pin.target.z;
+  }
+}
+
+void SpringsEngine::ComputeWind(double time) {
+  const WindSettings& wind = scene_.wind;
+  const Vec3 air =
+      wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
+  const auto position = [&](int p) {
+    return Vec3{positions_[0][Index(p)], positions_[1][Index(p)], positions_[2][Index(p)]};
+  };
+  ForRowChunks([&](const Sheet& sheet, int rowBegin, int rowEnd, int) {
+    for (int j = rowBegin; j < rowEnd; ++j) {
+      const int row = sheet.firstPoint + j * sheet.numWidth;
+      const int up = j > 0 ? sheet.numWidth : 0, down = j + 1 < sheet.numHeight ? sheet.numWidth : 0;
+      for (int i = 0; i < sheet.numWidth; ++i) {
+        const int p = row + i;
+        const Vec3 alongWidth = position(i + 1 < sheet.numWidth ? p + 1 : p) - position(i > 0 ? p - 1 : p);
+        const Vec3 alongHeight = position(p + down) - position(p - up);
+        // Differences over two spacings, or over one at the border, where a point has half the area:
+        // either way the normal is four times as long as the point's area is large.
+        const Vec3 normal = Cross(alongWidth, alongHeight);
+        const double length = Length(normal);
+        Vec3 force;
+        if (length > 0) {
+          const Vec3 before{previous_[0][Index(p)], previous_[1][Index(p)], previous_[2][Index(p)]};
+          const Vec3 velocity = (position(p) - before) / dt_;
+          force = normal * (0.25 * wind.drag * Dot(normal, air - velocity) / length);
+        }
+        windForce_[0][Index(p)] = force.x;
+        windForce_[1][Index(p)] = force.y;
+        windForce_[2][Index(p)] = force.z;
+      }
+    }
+  });
+}
+
+bool SpringsEngine::ApplyForces(double time) {
+  const bool windy = scene_.wind.drag > 0;
+  if (windy) ComputeWind(time);
+  const Vec3 gravity = scene_.simulation.gravity;
+  ForRowChunks([&](const Sheet& sheet, int rowBegin, int rowEnd, int chunk) {
+    IntegrateArgs args{};
+    args.numWidth = sheet.numWidth;
+    args.numHeight = sheet.numHeight;
+    args.rowBegin = rowBegin;
+    args.rowEnd = rowEnd;
+    const double weight[3] = {sheet.mass * gravity.x, sheet.mass * gravity.y, sheet.mass * gravity.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      args.x[axis] = positions_[axis].data() + sheet.firstPoint;
+      args.previous[axis] = previous_[axis].data() + sheet.firstPoint;
+      args.weight[axis] = weight[axis];
+      args.extraForce[axis] = windy ? windForce_[axis].data() + sheet.firstPoint : nullptr;
+    }
+    for (int kind = 0; kind < kSpringKinds; ++kind) {
+      args.rest[kind] = sheet.rest[kind].data();
+      args.stiffness[kind] = sheet.stiffness[kind];
+    }
+    args.keep = sheet.keep;
+    args.forceToWay = sheet.mass > 0 ? dt_ * dt_ / sheet.mass : 0;
+    args.bound = bound_;
+    args.scratch = integrateScratch_.data() + Index(chunk) * Index(scratchPerChunk_);
+    chunkCounts_[Index(chunk)] = kernels_.integrate(args);
+  });
+  for (int axis = 0; axis < 3; ++axis) positions_[axis].swap(previous_[axis]);
+  HoldPins(0, pointCount_);
+  for (const PinnedPoint& pin : pins_) {
+    previous_[0][Index(pin.point)] = pin.previousTarget.x;
+    previous_[1][Index(pin.point)] = pin.previousTarget.y;
+    previous_[2][Index(pin.point)] = pin.previousTarget.z;
+  }
+  return SumChunkCounts(chunkCount_) == 0;
+}
+
+/// Puts the pins among the points begin <= p < end back where they are held.
+void SpringsEngine::HoldPins(int begin, int end) {
+  const auto before = [](const PinnedPoint& pin, int point) { return pin.point < point; };
+  auto pin = std::lower_bound(pins_.begin(), pins_.end(), begin, before);
+  for (; pin != pins_.end() && pin->point < end; ++pin) {
+    positions_[0][Index(pin->point)] = pin->target.x;
+    positions_[1][Index(pin->point)] = pin->target.y;
+    positions_[2][Index(pin->point)] = pin->target.z;
+  }
+}
+
+void SpringsEngine::FindContacts() {
+  if (!scene_.simulation.selfCollision) return;
+  const HashFunction hash = scene_.simulation.hash;
+  ForPointChunks([&](int begin, int end, int) {
+    if (hash == HashFunction::Exact) {
+      kernels_.boxKeys({end - begin,
+                        {positions_[0].data() + begin, positions_[1].data() + begin, positions_[2].data() + begin},
+                        {boxSize_[0], boxSize_[1], boxSize_[2]},
+                        boxKeys_.data() + begin});
+      return;
+    }
+    for (std::size_t p = Index(begin); p < Index(end); ++p) {
+      const std::int64_t x = BoxIndex(positions_[0][p], boxSize_[0]), y = BoxIndex(positions_[1][p], boxSize_[1]),
+                         z = BoxIndex(positions_[2][p], boxSize_[2]);
+      boxKeys_[p] = hash == HashFunction::Linear   ? static_cast<std::uint64_t>(7 * x + 5 * y + 3 * z)
+                    : hash == HashFunction::Powers ? Power(x, 6) + Power(y, 4) + Power(z, 2)
+                                                   : 0;  // Brute: one bucket for all
+    }
+  });
+  map_.Build(boxKeys_);
+  bucketChunkEnds_.clear();
+  std::int32_t before = 0;
+  for (int bucket = 1; bucket <= map_.BucketCount(); ++bucket) {
+    const std::int32_t points = map_.PointsBefore(bucket);
+    if (points - before < kBucketPointsPerChunk && bucket < map_.BucketCount()) continue;
+    bucketChunkEnds_.push_back(bucket);
+    before = points;
+  }
+}
+
+void SpringsEngine::SelfCollide() {
+  if (!scene_.simulation.selfCollision) return;
+  const int chunks = static_cast<int>(bucketChunkEnds_.size());
+  executor_.ForChunks(chunks, [&](int chunk) {
+    const int begin = chunk == 0 ? 0 : bucketChunkEnds_[Index(chunk - 1)];
+    const int end = bucketChunkEnds_[Index(chunk)];
+    BucketArgs args{};
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis].data();
+    args.fixed = fixed_.data();
+    args.thickness = thickness_.data();
+    args.greatestApart = greatestApart_;
+    args.stepsPerFrame = scene_.simulation.stepsPerFrame;
+    args.scratch = bucketScratch_.data() + 3 * (Index(map_.PointsBefore(begin)) + 8 * Index(chunk));
+    std::int64_t contacts = 0;
+    for (int bucket = begin; bucket < end; ++bucket) {
+      const std::span<const std::int32_t> members = map_.Bucket(bucket);
+      if (members.size() < 2) continue;
+      args.members = members.data();
+      args.count = static_cast<int>(members.size());
+      contacts += kernels_.separateBucket(args);
+    }
+    chunkCounts_[Index(chunk)] = contacts;
+  });
+  counts_.selfContacts += SumChunkCounts(chunks) / 2;
+}
+
+void SpringsEngine::Collide() {
+  if (scene_.spheres.empty() && scene_.planes.empty()) return;
+  ForPointChunks([&](int begin, int end, int chunk) {
+    ColliderArgs args{};
+    args.begin = begin;
+    args.end = end;
+    for (int axis = 0; axis < 3; ++axis) {
+      args.x[axis] = positions_[axis].data();
+      args.previous[axis] = previous_[axis].data();
+    }
+    std::int64_t contacts = 0;
+    const auto spheres = [&] {
+      for (const SphereSettings& sphere : scene_.spheres) {
+        args.origin[0] = sphere.origin.x, args.origin[1] = sphere.origin.y, args.origin[2] = sphere.origin.z;
+        args.radius = sphere.radius;
+        args.friction = sphere.friction;
+        contacts += kernels_.collideSphere(args);
+      }
+    };
+    const auto planes = [&] {
+      for (const PlaneSettings& plane : scene_.planes) {
+        const Vec3 normal = UnitOr(plane.normal, {0, 1, 0});
+        args.origin[0] = plane.point.x, args.origin[1] = plane.point.y, args.origin[2] = plane.point.z;
+        args.normal[0] = normal.x, args.normal[1] = normal.y, args.normal[2] = normal.z;
+        args.friction = plane.friction;
+        args.response = static_cast<int>(scene_.simulation.planeResponse);
+        contacts += kernels_.collidePlane(args);
+      }
+    };
+    if (scene_.planesFirst) planes();
+    spheres();
+    if (!scene_.planesFirst) planes();
+    HoldPins(begin, end);
+    chunkCounts_[Index(chunk)] = contacts;
+  });
+  counts_.colliderContacts += SumChunkCounts((pointCount_ + kPointsPerChunk - 1) / kPointsPerChunk);
+}
+
+void SpringsEngine::LimitStrain() {
+  ForRowChunks([&](const Sheet& sheet, int rowBegin, int rowEnd, int chunk) {
+    LongSpringsArgs args{};
+    args.numWidth = sheet.numWidth;
+    args.rowBegin = rowBegin;
+    args.rowEnd = rowEnd;
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis].data() + sheet.firstPoint;
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.rest[kind].data();
+    args.limit = kStretchLimit;
+    args.longKinds = longKinds_.data() + sheet.firstPoint;
+    chunkCounts_[Index(chunk)] = kernels_.markLongSprings(args);
+  });
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    const int end = s + 1 < sheets_.size() ? sheets_[s + 1].firstChunk : chunkCount_;
+    std::int64_t marked = 0;
+    for (int chunk = sheets_[s].firstChunk; chunk < end; ++chunk) marked += chunkCounts_[Index(chunk)];
+    if (marked > 0) LimitSheet(sheets_[s]);
+  }
+}
+
+/// The sweep over all springs in creation order. A spring that was not marked and whose ends no
+/// earlier spring moved is not too long, so the sweep visits marks only; where it moves a point, it
+/// marks the later springs there.
+void SpringsEngine::LimitSheet(const Sheet& sheet) {
+  const int n = sheet.numWidth, count = sheet.PointCount();
+  double* const x = positions_[0].data() + sheet.firstPoint;
+  double* const y = positions_[1].data() + sheet.firstPoint;
+  double* const z = positions_[2].data() + sheet.firstPoint;
+  std::uint8_t* const marks = longKinds_.data() + sheet.firstPoint;
+  const std::uint8_t* const fixed = fixed_.data() + sheet.firstPoint;
+  int step[kSpringKinds];
+  for (int kind = 0; kind < kSpringKinds; ++kind) step[kind] = kSpringSteps[kind].dj * n + kSpringSteps[kind].di;
+
+  const auto markLater = [&](int moved, int creator, int kind) {
+    if (moved == creator) marks[moved] |= static_cast<std::uint8_t>(sheet.kinds[Index(moved)] & (~0u << (kind + 1)));
+    for (int k = 0; k < kSpringKinds; ++k) {
+      const int other = moved - step[k];  // the creator of the spring of kind k that ends at `moved`
+      if (other > creator && other < count) marks[other] |= static_cast<std::uint8_t>(sheet.kinds[Index(other)] & 1u << k);
+    }
+  };
+
+  std::int64_t limited = 0;
+  for (int p = 0; p < count; ++p) {
+    for (unsigned kind = 0; marks[p] != 0; ++kind) {
+      if (!(marks[p] & 1u << kind)) continue;
+      marks[p] &= static_cast<std::uint8_t>(~(1u << kind));
+      const int q = p + step[kind];
+      const double limit = kStretchLimit * sheet.rest[kind][Index(p)];
+      const Vec3 d{x[q] - x[p], y[q] - y[p], z[q] - z[p]};
+      const double length = Length(d);
+      if (length <= limit || (fixed[p] && fixed[q])) continue;
+      const Vec3 excess = d * ((length - limit) / length);
+      ++limited;
+      if (!fixed[p]) {
+        const Vec3 way = fixed[q] ? excess : 0.5 * excess;
+        x[p] += way.x, y[p] += way.y, z[p] += way.z;
+        markLater(p, p, static_cast<int>(kind));
+      }
+      if (!fixed[q]) {
+        const Vec3 way = fixed[p] ? excess : 0.5 * excess;
+        x[q] -= way.x, y[q] -= way.y, z[q] -= way.z;
+        markLater(q, p, static_cast<int>(kind));
+      }
+    }
+  }
+  counts_.limitedSprings += limited;
+}
+
+void SpringsEngine::ReadState(int cloth, std::span<Vec3> positions, std::span<Vec3> previous) const {
+  const Sheet& sheet = sheets_[Index(cloth)];
+  assert(positions.size() == Index(sheet.PointCount()) && previous.size() == positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const std::size_t p = Index(sheet.firstPoint) + v;
+    positions[v] = {positions_[0][p], positions_[1][p], positions_[2][p]};
+    previous[v] = {previous_[0][p], previous_[1][p], previous_[2][p]};
+  }
+}
+
+double SpringsEngine::GreatestStretch() const {
+  double greatest = 0;
+  for (const Sheet& sheet : sheets_) {
+    for (int kind = 0; kind < kSpringKinds; ++kind) {
+      const int step = kSpringSteps[kind].dj * sheet.numWidth + kSpringSteps[kind].di;
+      for (int v = 0; v < sheet.PointCount(); ++v) {
+        if (!(sheet.kinds[Index(v)] & 1u << kind)) continue;
+        const std::size_t p = Index(sheet.firstPoint + v), q = Index(sheet.firstPoint + v + step);
+        const Vec3 d{positions_[0][q] - positions_[0][p], positions_[1][q] - positions_[1][p],
+                     positions_[2][q] - positions_[2][p]};
+        const double rest = sheet.rest[kind][Index(v)];
+        greatest = std::max(greatest, Dot(d, d) / (rest * rest));
+      }
+    }
+  }
+  return std::sqrt(greatest);
+}
+
+SpringsEngine::Location SpringsEngine::FindOutOfBounds() const {
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    for (int v = 0; v < sheets_[s].PointCount(); ++v) {
+      for (const auto& axis : positions_) {
+        if (!(std::abs(axis[Index(sheets_[s].firstPoint + v)]) <= bound_)) return {static_cast<int>(s), v};
+      }
+    }
+  }
+  return {-1, -1};
+}
+
+}  // namespace percale::springs

@@ -1,0 +1,51 @@
+#include "world/engine.h"
+
+#include "springs/springs_engine.h"
+
+namespace percale {
+namespace {
+
+using springs::SpringsEngine;
+
+SpringsEngine& Self(void* engine) { return *static_cast<SpringsEngine*>(engine); }
+const SpringsEngine& Self(const void* engine) { return *static_cast<const SpringsEngine*>(engine); }
+
+constexpr EngineTable kSprings = {
+    .name = "springs",
+    .create = [](const Scene& scene, std::span<const ClothModel> models, const Executor& executor)
+        -> std::shared_ptr<void> {
+      return std::make_shared<SpringsEngine>(scene, models, executor, springs::BestKernels());
+    },
+    .configure = [](void* e, const Scene& scene) { Self(e).Configure(scene); },
+    .reset = [](void* e) { Self(e).Reset(); },
+    .moveColliders = [](void* e, double time) { Self(e).MoveColliders(time); },
+    .applyForces = [](void* e, double time) { return Self(e).ApplyForces(time); },
+    .findContacts = [](void* e) { Self(e).FindContacts(); },
+    .selfCollide = [](void* e) { Self(e).SelfCollide(); },
+    .collide = [](void* e) { Self(e).Collide(); },
+    .limitStrain = [](void* e) { Self(e).LimitStrain(); },
+    .readState = [](const void* e, int cloth, std::span<Vec3> positions,
+                    std::span<Vec3> previous) { Self(e).ReadState(cloth, positions, previous); },
+    .greatestStretch = [](const void* e) { return Self(e).GreatestStretch(); },
+    .mass = [](const void* e, int cloth) { return Self(e).Mass(cloth); },
+    .findOutOfBounds = [](const void* e) -> VertexRef {
+      const SpringsEngine::Location at = Self(e).FindOutOfBounds();
+      return {at.cloth, at.vertex};
+    },
+    .takeCounts = [](void* e) -> EngineCounts {
+      const springs::Counts counts = Self(e).counts();
+      Self(e).ClearCounts();
+      return {counts.selfContacts, counts.colliderContacts, counts.limitedSprings};
+    },
+};
+
+}  // namespace
+
+const EngineTable& FindEngine(Engine engine) {
+  switch (engine) {
+    case Engine::Springs: break;
+  }
+  return kSprings;
+}
+
+}  // namespace percale

@@ -1,0 +1,50 @@
+#pragma once
+/// \file
+/// What World knows of an engine: a table of its functions. The stages bear the names of
+/// percale::Stage; an engine that has nothing to do in one leaves it empty.
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "core/executor.h"
+#include "mesh/cloth_model.h"
+#include "percale/scene.h"
+
+namespace percale {
+
+/// What an engine did since the counts were last cleared.
+struct EngineCounts {
+  std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
+};
+
+/// A vertex of a cloth; cloth -1: none.
+struct VertexRef {
+  int cloth = -1, vertex = -1;
+};
+
+struct EngineTable {
+  std::string_view name;
+  std::shared_ptr<void> (*create)(const Scene&, std::span<const ClothModel>, const Executor&);
+  void (*configure)(void*, const Scene&);
+  void (*reset)(void*);
+
+  // The stages of one step that ends at `time` [s].
+  void (*moveColliders)(void*, double time);
+  bool (*applyForces)(void*, double time);  ///< False: a coordinate went out of bounds.
+  void (*findContacts)(void*);
+  void (*selfCollide)(void*);
+  void (*collide)(void*);
+  void (*limitStrain)(void*);
+
+  // What a frame leaves behind.
+  void (*readState)(const void*, int cloth, std::span<Vec3> positions, std::span<Vec3> previous);
+  double (*greatestStretch)(const void*);
+  double (*mass)(const void*, int cloth);  ///< Of one point [kg].
+  VertexRef (*findOutOfBounds)(const void*);
+  EngineCounts (*takeCounts)(void*);       ///< Since the last call.
+};
+
+const EngineTable& FindEngine(Engine engine);
+
+}  // namespace percale
