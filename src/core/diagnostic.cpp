@@ -7,9 +7,12 @@ namespace {
 
 const char* Name(Severity severity) {
   switch (severity) {
-    case Severity::Error: return "error";
-    case Severity::Warning: return "warning";
-    case Severity::Note: break;
+    case Severity::Error:
+      return "error";
+    case Severity::Warning:
+      return "warning";
+    case Severity::Note:
+      break;
   }
   return "note";
 }
@@ -20,8 +23,10 @@ std::string Printable(const std::string& text) {
   std::string out = text;
   for (char& c : out) {
     const auto byte = static_cast<unsigned char>(c);
-    if (c == '\t') c = ' ';
-    else if (byte < 0x20 || byte == 0x7f) c = '?';
+    if (c == '\t')
+      c = ' ';
+    else if (byte < 0x20 || byte == 0x7f)
+      c = '?';
   }
   return out;
 }
@@ -55,12 +60,16 @@ bool HasErrors(const Diagnostics& diagnostics) {
                      [](const Diagnostic& d) { return d.severity == Severity::Error; });
 }
 
-Diagnostic MakeError(std::string message) { return MakeError({}, std::move(message)); }
+Diagnostic MakeError(std::string message) {
+  return MakeError({}, std::move(message));
+}
 
 Diagnostic MakeError(std::string file, std::string message) {
   return {Severity::Error, {std::move(file), 0, 0}, std::move(message), {}, 0};
 }
 
-Diagnostic MakeWarning(std::string message) { return {Severity::Warning, {}, std::move(message), {}, 0}; }
+Diagnostic MakeWarning(std::string message) {
+  return {Severity::Warning, {}, std::move(message), {}, 0};
+}
 
 }  // namespace percale

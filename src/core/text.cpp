@@ -28,7 +28,9 @@ double ReadClassic(std::string_view text, bool& ok) {
   return number;
 }
 
-bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+bool IsDigit(char c) {
+  return c >= '0' && c <= '9';
+}
 
 /// Whether `text` is a number by JSON's grammar: no leading '+', zeros or '.', no hexadecimal.
 bool IsJsonNumber(std::string_view text) {
@@ -95,8 +97,10 @@ std::string FormatNumber(double number) {
   // 1e+06 -> 1e6
   if (const std::size_t e = out.find('e'); e != std::string::npos) {
     std::size_t digits = e + 1;
-    if (out[digits] == '+') out.erase(digits, 1);
-    else ++digits;
+    if (out[digits] == '+')
+      out.erase(digits, 1);
+    else
+      ++digits;
     while (digits + 1 < out.size() && out[digits] == '0') out.erase(digits, 1);
   }
   return out;
@@ -133,11 +137,21 @@ std::string Quote(std::string_view text, std::size_t limit) {
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     switch (c) {
-      case '"': out += "\\\""; break;
-      case '\\': out += "\\\\"; break;
-      case '\n': out += "\\n"; break;
-      case '\r': out += "\\r"; break;
-      case '\t': out += "\\t"; break;
+      case '"':
+        out += "\\\"";
+        break;
+      case '\\':
+        out += "\\\\";
+        break;
+      case '\n':
+        out += "\\n";
+        break;
+      case '\r':
+        out += "\\r";
+        break;
+      case '\t':
+        out += "\\t";
+        break;
       default:
         if (byte < 0x20 || byte == 0x7f) {
           out += "\\u00";

@@ -1,0 +1,13 @@
+#pragma once
+/// \file
+/// How much memory there is, so that a scene that cannot fit is refused before it is allocated.
+
+#include <cstdint>
+
+namespace percale {
+
+/// Bytes of memory that this process may use: the machine's, or its container's where that is less
+/// (Linux). 0 where the system does not say.
+std::uint64_t AvailableMemory();
+
+}  // namespace percale

@@ -1,0 +1,631 @@
+#include "percale/parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "core/text.h"
+
+namespace percale {
+namespace {
+
+// Bounds beyond any use, which keep sums and products of values finite.
+constexpr double kFarthest = 1e6;    // [m]
+constexpr double kMostPoints = 1e6;  // along one side of a grid
+constexpr double kMostSteps = 1e5;   // frames per second, and steps per frame
+constexpr double kLatest = 1e6;      // [s]
+constexpr double kLargestInt = 2147483647;
+/// Messages leave out a bound beyond this until a value breaks it: nobody asks for less than 1e12 N/m.
+constexpr double kWorthNaming = 1e4;
+
+// Names of the values of each enumeration, in the enumeration's order.
+constexpr std::string_view kEngines[] = {"springs"};
+constexpr std::string_view kHashFunctions[] = {"exact", "linear", "powers", "brute"};
+constexpr std::string_view kPlaneResponses[] = {"interpolate", "offset", "hold"};
+constexpr std::string_view kTangents[] = {"constant", "from_uv"};
+constexpr std::string_view kOrientations[] = {"horizontal", "vertical"};
+
+constexpr std::span<const std::string_view> NamesOf(Engine) {
+  return kEngines;
+}
+constexpr std::span<const std::string_view> NamesOf(HashFunction) {
+  return kHashFunctions;
+}
+constexpr std::span<const std::string_view> NamesOf(PlaneResponse) {
+  return kPlaneResponses;
+}
+constexpr std::span<const std::string_view> NamesOf(Tangents) {
+  return kTangents;
+}
+constexpr std::span<const std::string_view> NamesOf(Orientation) {
+  return kOrientations;
+}
+
+/// What the table says about a parameter beside where it lives.
+struct Facts {
+  std::string_view name, label, unit = {};
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool minExclusive = false;
+  bool required = false;
+  double typicalMin = 0, typicalMax = 0;
+  bool logarithmic = false;
+  Effect effect = Effect::Live;
+  std::string_view help = {};
+};
+
+template <class T>
+struct IsVector : std::false_type {};
+template <class T>
+struct IsVector<std::vector<T>> : std::true_type {};
+
+/// The member `Field` of the object `index` of `Owner`, a member of Scene: one object or a vector.
+template <auto Owner, auto Field, class AnyScene>
+auto& Access(AnyScene& scene, std::size_t index) {
+  auto& owner = scene.*Owner;
+  if constexpr (IsVector<std::remove_cvref_t<decltype(owner)>>::value)
+    return owner[index].*Field;
+  else
+    return owner.*Field;
+}
+
+/// The value of the file for a member of the scene, and back.
+template <auto Owner, auto Field>
+Value Get(const Scene& scene, std::size_t index) {
+  const auto& member = Access<Owner, Field>(scene, index);
+  using T = std::remove_cvref_t<decltype(member)>;
+  if constexpr (std::is_same_v<T, Orientation>)
+    return static_cast<double>(member);
+  else if constexpr (std::is_enum_v<T>)
+    return std::string(NamesOf(T{})[static_cast<std::size_t>(member)]);
+  else if constexpr (std::is_same_v<T, int>)
+    return static_cast<double>(member);
+  else
+    return member;
+}
+
+template <auto Owner, auto Field>
+void Set(Scene& scene, std::size_t index, const Value& value) {
+  auto& member = Access<Owner, Field>(scene, index);
+  using T = std::remove_cvref_t<decltype(member)>;
+  if constexpr (std::is_same_v<T, int> || std::is_same_v<T, Orientation>) {
+    member = static_cast<T>(std::get<double>(value));
+  } else if constexpr (std::is_enum_v<T>) {
+    const auto names = NamesOf(T{});
+    member = static_cast<T>(std::find(names.begin(), names.end(), std::get<std::string>(value)) - names.begin());
+  } else {
+    member = std::get<T>(value);
+  }
+}
+
+template <class T>
+constexpr ValueKind KindOf() {
+  if constexpr (std::is_same_v<T, double>)
+    return ValueKind::Number;
+  else if constexpr (std::is_same_v<T, int> || std::is_same_v<T, Orientation>)
+    return ValueKind::Integer;
+  else if constexpr (std::is_same_v<T, bool>)
+    return ValueKind::Boolean;
+  else if constexpr (std::is_enum_v<T>)
+    return ValueKind::Choice;
+  else if constexpr (std::is_same_v<T, std::string>)
+    return ValueKind::Text;
+  else if constexpr (std::is_same_v<T, Vec3>)
+    return ValueKind::Vector;
+  else {
+    static_assert(std::is_same_v<T, std::vector<GridPoint>>);
+    return ValueKind::GridPoints;
+  }
+}
+
+/// The row of the table for `Owner.*Field`; its kind and choices follow from the member's type.
+template <auto Owner, auto Field>
+Parameter Row(std::string_view group, const Facts& f) {
+  using T = std::remove_cvref_t<decltype(Access<Owner, Field>(std::declval<Scene&>(), 0))>;
+  std::span<const std::string_view> choices;
+  if constexpr (std::is_enum_v<T>) choices = NamesOf(T{});
+  return {group,
+          f.name,
+          f.label,
+          KindOf<T>(),
+          f.unit,
+          f.min,
+          f.max,
+          f.minExclusive,
+          f.required,
+          f.typicalMin,
+          f.typicalMax,
+          f.logarithmic,
+          f.help,
+          choices,
+          f.effect,
+          &Get<Owner, Field>,
+          &Set<Owner, Field>};
+}
+template <auto Field>
+Parameter Cloth(const Facts& facts) {
+  return Row<&Scene::cloths, Field>("cloth", facts);
+}
+template <auto Field>
+Parameter Sphere(const Facts& facts) {
+  return Row<&Scene::spheres, Field>("sphere", facts);
+}
+template <auto Field>
+Parameter Plane(const Facts& facts) {
+  return Row<&Scene::planes, Field>("plane", facts);
+}
+template <auto Field>
+Parameter Motion(const Facts& facts) {
+  return Row<&Scene::pinMotions, Field>("pin_motion", facts);
+}
+template <auto Field>
+Parameter Wind(const Facts& facts) {
+  return Row<&Scene::wind, Field>("wind", facts);
+}
+template <auto Field>
+Parameter Simulation(const Facts& facts) {
+  return Row<&Scene::simulation, Field>("simulation", facts);
+}
+template <auto Field>
+Parameter Camera(const Facts& facts) {
+  return Row<&Scene::camera, Field>("camera", facts);
+}
+template <auto Field>
+Parameter Look(const Facts& facts) {
+  return Row<&Scene::look, Field>("look", facts);
+}
+
+// clang-format off
+std::vector<Parameter> MakeTable() {
+  constexpr Effect kRebuild = Effect::Rebuild;
+  using C = ClothSettings;
+  using S = SimulationSettings;
+  return {
+    Cloth<&C::width>({.name = "width", .label = "Width", .unit = "m", .min = 0, .max = kFarthest, .minExclusive = true, .required = true,
+      .typicalMin = 0.1, .typicalMax = 4, .effect = kRebuild, .help = "Extent of the sheet along x."}),
+    Cloth<&C::height>({.name = "height", .label = "Height", .unit = "m", .min = 0, .max = kFarthest, .minExclusive = true, .required = true,
+      .typicalMin = 0.1, .typicalMax = 4, .effect = kRebuild, .help = "Extent of the sheet along z when it lies, along y when it stands."}),
+    Cloth<&C::numWidthPoints>({.name = "num_width_points", .label = "Points along width", .min = 2, .max = kMostPoints, .required = true,
+      .typicalMin = 2, .typicalMax = 200, .effect = kRebuild, .help = "Grid points along the width; the course uses 50."}),
+    Cloth<&C::numHeightPoints>({.name = "num_height_points", .label = "Points along height", .min = 2, .max = kMostPoints, .required = true,
+      .typicalMin = 2, .typicalMax = 200, .effect = kRebuild, .help = "Grid points along the height; the course uses 50."}),
+    Cloth<&C::thickness>({.name = "thickness", .label = "Thickness", .unit = "m", .min = 0, .max = kFarthest, .required = true,
+      .typicalMin = 0, .typicalMax = 0.02, .help = "Points of cloth keep twice this apart; at most half the grid's spacing, or the sheet swells."}),
+    Cloth<&C::orientation>({.name = "orientation", .label = "Orientation", .min = 0, .max = 1, .required = true,
+      .effect = kRebuild, .help = "0: the sheet lies at y = 1 over x, z. 1: it stands in x, y, with a slight random z."}),
+    Cloth<&C::origin>({.name = "origin", .label = "Origin", .unit = "m", .min = -kFarthest, .max = kFarthest,
+      .typicalMin = -2, .typicalMax = 2, .effect = kRebuild, .help = "Moves the whole sheet."}),
+    Cloth<&C::pinned>({.name = "pinned", .label = "Pinned points",
+      .effect = kRebuild, .help = "Immovable points, each as [i, j]: column along the width, row along the height, from 0."}),
+    Cloth<&C::enableStructural>({.name = "enable_structural", .label = "Structural", .required = true,
+      .help = "Springs to the neighbours left and up."}),
+    Cloth<&C::enableShearing>({.name = "enable_shearing", .label = "Shearing", .required = true,
+      .help = "Springs to the diagonal neighbours."}),
+    Cloth<&C::enableBending>({.name = "enable_bending", .label = "Bending", .required = true,
+      .help = "Springs, five times weaker, to the second neighbours left and up."}),
+    Cloth<&C::damping>({.name = "damping", .label = "Damping", .unit = "%", .min = 0, .max = 100, .required = true,
+      .typicalMin = 0, .typicalMax = 1, .help = "Share of the velocity lost per step; 0.2 settles in seconds, 1 falls like a parachute."}),
+    Cloth<&C::density>({.name = "density", .label = "Density", .unit = "kg/m^2", .min = 0, .max = 1e9, .required = true,
+      .typicalMin = 1, .typicalMax = 500000, .logarithmic = true, .help = "Mass per area; the course uses 150, which its panel shows as 15 g/cm^2."}),
+    Cloth<&C::ks>({.name = "ks", .label = "Spring constant", .unit = "N/m", .min = 0, .max = 1e12, .required = true,
+      .typicalMin = 1, .typicalMax = 100000, .logarithmic = true, .help = "Stiffness of the springs; 500 sags like a net, 5000 like cloth, 50000 is stiff."}),
+    Cloth<&C::seed>({.name = "seed", .label = "Seed", .min = 0, .max = kLargestInt,
+      .typicalMin = 0, .typicalMax = 1000, .effect = kRebuild, .help = "Of the standing sheet's random z."}),
+
+    Sphere<&SphereSettings::origin>({.name = "origin", .label = "Centre", .unit = "m", .min = -kFarthest, .max = kFarthest, .required = true,
+      .typicalMin = -2, .typicalMax = 2, .help = "Centre of the sphere."}),
+    Sphere<&SphereSettings::radius>({.name = "radius", .label = "Radius", .unit = "m", .min = 0, .max = kFarthest, .minExclusive = true, .required = true,
+      .typicalMin = 0.01, .typicalMax = 1, .help = "Radius of the sphere."}),
+    Sphere<&SphereSettings::friction>({.name = "friction", .label = "Friction", .min = 0, .max = 1, .required = true,
+      .typicalMin = 0, .typicalMax = 1, .help = "0: cloth slides off; 1: it stays where it touched."}),
+
+    Plane<&PlaneSettings::point>({.name = "point", .label = "Point", .unit = "m", .min = -kFarthest, .max = kFarthest, .required = true,
+      .typicalMin = -2, .typicalMax = 2, .help = "Any point of the plane; the square that is drawn is centred here."}),
+    Plane<&PlaneSettings::normal>({.name = "normal", .label = "Normal", .min = -kFarthest, .max = kFarthest, .required = true,
+      .typicalMin = -1, .typicalMax = 1, .help = "Direction across the plane, of any length but 0."}),
+    Plane<&PlaneSettings::friction>({.name = "friction", .label = "Friction", .min = 0, .max = 1, .required = true,
+      .typicalMin = 0, .typicalMax = 1, .help = "0: cloth slides; 1: it stays where it touched."}),
+
+    Motion<&PinMotion::cloth>({.name = "cloth", .label = "Cloth", .min = 0, .max = kMostPoints,
+      .help = "Which cloth, counted from 0."}),
+    Motion<&PinMotion::points>({.name = "points", .label = "Points",
+      .help = "Pinned points that move, each as [i, j]; none: all pins of the cloth."}),
+    Motion<&PinMotion::start>({.name = "start", .label = "Start", .unit = "s", .min = 0, .max = kLatest,
+      .typicalMin = 0, .typicalMax = 10, .help = "When the motion begins."}),
+    Motion<&PinMotion::end>({.name = "end", .label = "End", .unit = "s", .min = 0, .max = kLatest, .minExclusive = true, .required = true,
+      .typicalMin = 0, .typicalMax = 10, .help = "When the motion is over, later than its start."}),
+    Motion<&PinMotion::displacement>({.name = "displacement", .label = "Displacement", .unit = "m", .min = -kFarthest, .max = kFarthest, .required = true,
+      .typicalMin = -2, .typicalMax = 2, .help = "How far the points are carried in all; several motions of a point add up."}),
+
+    Wind<&WindSettings::velocity>({.name = "velocity", .label = "Velocity", .unit = "m/s", .min = -1e4, .max = 1e4,
+      .typicalMin = -20, .typicalMax = 20, .help = "Of the air; a breeze is 5, a storm 25."}),
+    Wind<&WindSettings::drag>({.name = "drag", .label = "Drag", .unit = "kg/(m^2 s)", .min = 0, .max = 1e6,
+      .typicalMin = 0, .typicalMax = 1000, .help = "Force per area and speed across the cloth; 0: the air resists nothing."}),
+    Wind<&WindSettings::gustiness>({.name = "gustiness", .label = "Gustiness", .min = 0, .max = 1,
+      .typicalMin = 0, .typicalMax = 1, .help = "Share of itself by which the wind's speed swings."}),
+    Wind<&WindSettings::gustPeriod>({.name = "gust_period", .label = "Gust period", .unit = "s", .min = 0, .max = kLatest, .minExclusive = true,
+      .typicalMin = 0.1, .typicalMax = 10, .help = "Time from gust to gust."}),
+
+    Simulation<&S::engine>({.name = "engine", .label = "Engine", .help = "springs: the classic simulator of masses and springs."}),
+    Simulation<&S::framesPerSecond>({.name = "frames_per_second", .label = "Frames/s", .unit = "1/s", .min = 1, .max = kMostSteps,
+      .typicalMin = 10, .typicalMax = 240, .help = "Pictures per simulated second."}),
+    Simulation<&S::stepsPerFrame>({.name = "steps_per_frame", .label = "Steps/frame", .min = 1, .max = kMostSteps,
+      .typicalMin = 1, .typicalMax = 100, .help = "Time steps from picture to picture; stiffer or lighter cloth needs more."}),
+    Simulation<&S::gravity>({.name = "gravity", .label = "Gravity", .unit = "m/s^2", .min = -kFarthest, .max = kFarthest,
+      .typicalMin = -20, .typicalMax = 20, .help = "Acceleration of everything that has mass; (0, -9.8, 0) on Earth."}),
+    Simulation<&S::selfCollision>({.name = "self_collision", .label = "Self-collision",
+      .help = "Points of cloth keep apart, within a cloth and between cloths."}),
+    Simulation<&S::hash>({.name = "hash", .label = "Hash function",
+      .help = "How the spatial map numbers its boxes: exact shares none; linear and powers are the write-up's; brute compares all points."}),
+    Simulation<&S::planeResponse>({.name = "plane_response", .label = "Plane response",
+      .help = "Where a point that crossed a plane is put: interpolate: where it crossed; offset: above its foot; hold: where it was."}),
+
+    Camera<&CameraSettings::automatic>({.name = "automatic", .label = "Automatic",
+      .help = "The camera looks at the cloths as the course does; false as soon as another key of the camera is stated."}),
+    Camera<&CameraSettings::target>({.name = "target", .label = "Target", .unit = "m", .min = -kFarthest, .max = kFarthest,
+      .typicalMin = -2, .typicalMax = 2, .help = "The point looked at."}),
+    Camera<&CameraSettings::distance>({.name = "distance", .label = "Distance", .unit = "m", .min = 0, .max = kFarthest, .minExclusive = true,
+      .typicalMin = 0.1, .typicalMax = 10, .help = "From the target."}),
+    Camera<&CameraSettings::azimuth>({.name = "azimuth", .label = "Azimuth", .unit = "degree", .min = -360, .max = 360,
+      .typicalMin = -180, .typicalMax = 180, .help = "Turn about the vertical; 0 looks along -z."}),
+    Camera<&CameraSettings::elevation>({.name = "elevation", .label = "Elevation", .unit = "degree", .min = -89, .max = 89,
+      .typicalMin = -89, .typicalMax = 89, .help = "Above the horizon."}),
+
+    Look<&LookSettings::shader>({.name = "shader", .label = "Shader",
+      .help = "Name of a file shaders/NAME.frag: Wireframe, Normal, Diffuse, Phong, Texture, Bump, Displacement, Mirror, Flag, or your own."}),
+    Look<&LookSettings::color>({.name = "color", .label = "Colour", .min = 0, .max = 1,
+      .typicalMin = 0, .typicalMax = 1, .help = "Base colour of cloths and spheres: red, green, blue."}),
+    Look<&LookSettings::normalScaling>({.name = "normal_scaling", .label = "Normal scale", .min = -1000, .max = 1000,
+      .typicalMin = 0, .typicalMax = 20, .help = "Strength of the bumps of Bump and Displacement."}),
+    Look<&LookSettings::heightScaling>({.name = "height_scaling", .label = "Height scale", .min = -1000, .max = 1000,
+      .typicalMin = 0, .typicalMax = 1, .help = "How far Displacement moves the surface."}),
+    Look<&LookSettings::tangents>({.name = "tangents", .label = "Tangents",
+      .help = "constant: (1, 0, 0) everywhere on a cloth, as in the course; from_uv: along its width, as it really lies."}),
+  };
+}
+// clang-format on
+
+template <auto Owner>
+std::size_t Count(const Scene& scene) {
+  if constexpr (IsVector<std::remove_cvref_t<decltype(scene.*Owner)>>::value)
+    return (scene.*Owner).size();
+  else
+    return 1;
+}
+template <auto Owner>
+void Resize(Scene& scene, std::size_t count) {
+  if constexpr (IsVector<std::remove_cvref_t<decltype(scene.*Owner)>>::value)
+    (scene.*Owner).resize(count);
+  else
+    static_cast<void>(scene), static_cast<void>(count);
+}
+template <auto Owner>
+constexpr ParameterGroup Group(std::string_view name, bool required, std::string_view help) {
+  constexpr bool kIsArray = IsVector<std::remove_cvref_t<decltype(std::declval<Scene&>().*Owner)>>::value;
+  return {name, kIsArray, required, help, &Count<Owner>, &Resize<Owner>};
+}
+
+constexpr ParameterGroup kGroups[] = {
+    Group<&Scene::cloths>("cloth", true, "A sheet of cloth: a grid of points joined by springs."),
+    Group<&Scene::spheres>("sphere", false, "A ball that cloth rests on."),
+    Group<&Scene::planes>("plane", false, "An endless flat wall or floor."),
+    Group<&Scene::pinMotions>("pin_motion", false, "Carries pinned points of a cloth along a straight line."),
+    Group<&Scene::wind>("wind", false, "Moving air that pushes on the cloth."),
+    Group<&Scene::simulation>("simulation", false, "How time is cut into steps, and which rules act."),
+    Group<&Scene::camera>("camera", false, "Where the picture is taken from."),
+    Group<&Scene::look>("look", false, "How cloths and colliders are drawn."),
+};
+
+const std::vector<Parameter>& Table() {
+  static const std::vector<Parameter> table = MakeTable();
+  return table;
+}
+
+/// "a number >= 0 N/m"; with `all`, every bound, however far.
+std::string Expected(const Parameter& p, bool all) {
+  const auto named = [&](double bound) { return std::isfinite(bound) && (all || std::abs(bound) <= kWorthNaming); };
+  const auto range = [&] {
+    const std::string unit = p.unit.empty() ? "" : " " + std::string(p.unit);
+    if (named(p.min) && named(p.max)) {
+      if (p.minExclusive) return " > " + FormatNumber(p.min) + " and <= " + FormatNumber(p.max) + unit;
+      return " from " + FormatNumber(p.min) + " to " + FormatNumber(p.max) + unit;
+    }
+    if (named(p.min)) return (p.minExclusive ? " > " : " >= ") + FormatNumber(p.min) + unit;
+    if (named(p.max)) return " <= " + FormatNumber(p.max) + unit;
+    return p.unit.empty() ? "" : " in" + unit;
+  };
+  switch (p.kind) {
+    case ValueKind::Number:
+      return "a number" + range();
+    case ValueKind::Integer: {
+      if (p.choices.empty()) return "a whole number" + range();
+      std::string out;
+      for (std::size_t i = 0; i < p.choices.size(); ++i) {
+        out += (i > 0 ? " or " : "") + std::to_string(i) + " (" + std::string(p.choices[i]) + ")";
+      }
+      return out;
+    }
+    case ValueKind::Boolean:
+      return "true or false";
+    case ValueKind::Choice: {
+      if (p.choices.size() == 1) return Quote(p.choices[0]);
+      std::string out = "one of";
+      for (std::size_t i = 0; i < p.choices.size(); ++i) out += (i > 0 ? ", " : " ") + Quote(p.choices[i]);
+      return out;
+    }
+    case ValueKind::Text:
+      return "a text in double quotes";
+    case ValueKind::Vector:
+      return "an array of three numbers" + range();
+    case ValueKind::GridPoints:
+      break;
+  }
+  return "an array of points [i, j]";
+}
+
+std::string Found(const Parameter& p, bool all, const Value& value) {
+  return "expected " + Expected(p, all) + ", got " + FormatValue(value);
+}
+
+/// Whether `number` is within the bounds of `p`; false for NaN.
+bool InRange(const Parameter& p, double number) {
+  return (p.minExclusive ? number > p.min : number >= p.min) && number <= p.max && std::isfinite(number);
+}
+
+std::vector<std::string_view> GroupNames() {
+  std::vector<std::string_view> names;
+  for (const ParameterGroup& group : kGroups) names.push_back(group.name);
+  return names;
+}
+
+std::vector<std::string_view> ParameterNames(std::string_view group) {
+  std::vector<std::string_view> names;
+  for (const Parameter& parameter : Table()) {
+    if (parameter.group == group) names.push_back(parameter.name);
+  }
+  return names;
+}
+
+// Values of assignments: JSON, or a bare word for a text.
+
+std::string_view Trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(kSpace);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
+}
+
+/// The elements of "[a, b, c]", at the outermost level; nothing if `text` is not in brackets.
+std::optional<std::vector<std::string_view>> Elements(std::string_view text) {
+  text = Trimmed(text);
+  if (text.size() < 2 || text.front() != '[' || text.back() != ']') return std::nullopt;
+  text = Trimmed(text.substr(1, text.size() - 2));
+  std::vector<std::string_view> elements;
+  if (text.empty()) return elements;
+  int depth = 0;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '[') ++depth;
+    if (text[i] == ']' && --depth < 0) return std::nullopt;
+    if (text[i] == ',' && depth == 0) {
+      elements.push_back(Trimmed(text.substr(begin, i - begin)));
+      begin = i + 1;
+    }
+  }
+  if (depth != 0) return std::nullopt;
+  elements.push_back(Trimmed(text.substr(begin)));
+  return elements;
+}
+
+std::optional<std::vector<double>> Numbers(std::string_view text, std::size_t count) {
+  const auto elements = Elements(text);
+  if (!elements || elements->size() != count) return std::nullopt;
+  std::vector<double> numbers;
+  for (const std::string_view element : *elements) {
+    const auto number = ParseNumber(element);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+bool IsWholeInt(double number) {
+  return std::trunc(number) == number && std::abs(number) <= kLargestInt;
+}
+
+/// The value that `text` states for `p`, or nothing if it is not of the parameter's kind.
+std::optional<Value> ParseValue(const Parameter& p, std::string_view text) {
+  text = Trimmed(text);
+  switch (p.kind) {
+    case ValueKind::Number:
+    case ValueKind::Integer:
+      if (const auto number = ParseNumber(text)) return *number;
+      return std::nullopt;
+    case ValueKind::Boolean:
+      if (text == "true" || text == "false") return text == "true";
+      return std::nullopt;
+    case ValueKind::Choice:
+    case ValueKind::Text: {
+      if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+      if (text.find_first_of("\"\\") != std::string_view::npos) return std::nullopt;
+      return std::string(text);
+    }
+    case ValueKind::Vector:
+      if (const auto v = Numbers(text, 3)) return Vec3{(*v)[0], (*v)[1], (*v)[2]};
+      return std::nullopt;
+    case ValueKind::GridPoints:
+      break;
+  }
+  const auto elements = Elements(text);
+  if (!elements) return std::nullopt;
+  std::vector<GridPoint> points;
+  for (const std::string_view element : *elements) {
+    const auto ij = Numbers(element, 2);
+    if (!ij || !IsWholeInt((*ij)[0]) || !IsWholeInt((*ij)[1])) return std::nullopt;
+    points.push_back({static_cast<int>((*ij)[0]), static_cast<int>((*ij)[1])});
+  }
+  return points;
+}
+
+}  // namespace
+
+std::span<const Parameter> Parameters() {
+  return Table();
+}
+std::span<const ParameterGroup> ParameterGroups() {
+  return kGroups;
+}
+
+const ParameterGroup* FindGroup(std::string_view name) {
+  for (const ParameterGroup& group : kGroups) {
+    if (group.name == name) return &group;
+  }
+  return nullptr;
+}
+
+const Parameter* FindParameter(std::string_view group, std::string_view name) {
+  for (const Parameter& parameter : Table()) {
+    if (parameter.group == group && parameter.name == name) return &parameter;
+  }
+  return nullptr;
+}
+
+Value DefaultValue(const Parameter& parameter) {
+  static const Scene scene = [] {
+    Scene s;
+    for (const ParameterGroup& group : kGroups) group.resize(s, 1);
+    return s;
+  }();
+  return parameter.get(scene, 0);
+}
+
+std::optional<std::string> CheckValue(const Parameter& p, const Value& value) {
+  const auto wrong = [&](bool all) { return std::optional(Found(p, all, value)); };
+  switch (p.kind) {
+    case ValueKind::Number:
+    case ValueKind::Integer: {
+      const double* number = std::get_if<double>(&value);
+      if (!number) return wrong(false);
+      if (p.kind == ValueKind::Integer && !(std::trunc(*number) == *number)) return wrong(false);
+      if (!InRange(p, *number)) return wrong(*number > p.max);
+      return std::nullopt;
+    }
+    case ValueKind::Boolean:
+      return std::holds_alternative<bool>(value) ? std::nullopt : wrong(false);
+    case ValueKind::Choice: {
+      const std::string* text = std::get_if<std::string>(&value);
+      if (!text) return wrong(false);
+      if (std::find(p.choices.begin(), p.choices.end(), *text) != p.choices.end()) return std::nullopt;
+      return Found(p, false, value) + DidYouMean(*text, p.choices);
+    }
+    case ValueKind::Text:
+      return std::holds_alternative<std::string>(value) ? std::nullopt : wrong(false);
+    case ValueKind::Vector: {
+      const Vec3* v = std::get_if<Vec3>(&value);
+      if (!v) return wrong(false);
+      if (!InRange(p, v->x) || !InRange(p, v->y) || !InRange(p, v->z)) return wrong(true);
+      return std::nullopt;
+    }
+    case ValueKind::GridPoints:
+      break;
+  }
+  return std::holds_alternative<std::vector<GridPoint>>(value) ? std::nullopt : wrong(false);
+}
+
+std::string DescribeExpected(const Parameter& parameter) {
+  return Expected(parameter, false);
+}
+
+std::string FormatValue(const Value& value) {
+  struct Visitor {
+    std::string operator()(double number) const { return FormatNumber(number); }
+    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+    std::string operator()(const std::string& text) const { return Quote(text); }
+    std::string operator()(const Vec3& v) const {
+      return "[" + FormatNumber(v.x) + ", " + FormatNumber(v.y) + ", " + FormatNumber(v.z) + "]";
+    }
+    std::string operator()(const std::vector<GridPoint>& points) const {
+      std::string out = "[";
+      for (const GridPoint& p : points) {
+        out += (out.size() > 1 ? ", [" : "[") + std::to_string(p.i) + ", " + std::to_string(p.j) + "]";
+      }
+      return out + "]";
+    }
+  };
+  return std::visit(Visitor{}, value);
+}
+
+Result<std::vector<std::string>> ApplyAssignment(Scene& scene, std::string_view assignment) {
+  const auto fail = [&](const std::string& message) {
+    return Result<std::vector<std::string>>(MakeError(Quote(assignment, 80) + ": " + message));
+  };
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string_view::npos) {
+    return fail("expected GROUP.KEY=VALUE, such as cloth.ks=500; there is no '='");
+  }
+  const std::string_view path = Trimmed(assignment.substr(0, equals)), text = assignment.substr(equals + 1);
+  const std::size_t firstDot = path.find('.'), lastDot = path.rfind('.');
+  const std::string_view groupName = path.substr(0, firstDot);
+  const std::string_view name = lastDot == std::string_view::npos ? std::string_view() : path.substr(lastDot + 1);
+
+  const ParameterGroup* group = FindGroup(groupName);
+  if (!group) {
+    std::string owner;  // a bare key: tell whose it is
+    for (const Parameter& p : Table()) {
+      if (p.name == path && owner.empty())
+        owner = " (did you mean " + std::string(p.group) + "." + std::string(p.name) + "?)";
+    }
+    const std::vector<std::string_view> known = GroupNames();
+    std::string list;
+    for (const std::string_view k : known) list += (list.empty() ? "" : ", ") + std::string(k);
+    return fail("there is no group " + Quote(groupName, 40) + (owner.empty() ? DidYouMean(groupName, known) : owner) +
+                "; the groups are " + list);
+  }
+  if (name.empty()) {
+    return fail("expected GROUP.KEY=VALUE, such as " + std::string(groupName) + "." +
+                std::string(ParameterNames(groupName).front()) + "=...");
+  }
+  const Parameter* parameter = FindParameter(groupName, name);
+  if (!parameter) {
+    const std::vector<std::string_view> known = ParameterNames(groupName);
+    return fail(std::string(groupName) + " has no key " + Quote(name, 40) + DidYouMean(name, known));
+  }
+
+  const std::size_t count = group->count(scene);
+  std::size_t begin = 0, end = count;
+  if (lastDot != firstDot) {
+    const std::string_view index = path.substr(firstDot + 1, lastDot - firstDot - 1);
+    if (!group->isArray) return fail(std::string(groupName) + " is a single object and takes no index");
+    const auto number = ParseNumber(index);
+    if (!number || !IsWholeInt(*number) || *number < 0) {
+      return fail("expected the index of a " + std::string(groupName) + ", such as " + std::string(groupName) + ".0." +
+                  std::string(name) + ", got " + Quote(index, 40));
+    }
+    if (*number >= static_cast<double>(count)) {
+      return fail("there is no " + std::string(groupName) + "." + std::string(index) + "; the scene has " +
+                  std::to_string(count) + ", counted from 0");
+    }
+    begin = static_cast<std::size_t>(*number);
+    end = begin + 1;
+  } else if (count == 0) {
+    return fail("the scene has no " + std::string(groupName) + " to set");
+  }
+
+  const std::optional<Value> value = ParseValue(*parameter, text);
+  if (!value) return fail("expected " + Expected(*parameter, false) + ", got " + Quote(Trimmed(text), 40));
+  if (const auto problem = CheckValue(*parameter, *value)) return fail(*problem);
+
+  std::vector<std::string> paths;
+  for (std::size_t i = begin; i < end; ++i) {
+    parameter->set(scene, i, *value);
+    const std::string object = "/" + std::string(groupName) + (group->isArray ? "/" + std::to_string(i) : "");
+    paths.push_back(object + "/" + std::string(name));
+  }
+  // As in a file: who places the camera by hand does not want it placed automatically.
+  if (groupName == "camera" && name != "automatic") scene.camera.automatic = false;
+  return paths;
+}
+
+}  // namespace percale
