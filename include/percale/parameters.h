@@ -19,7 +19,7 @@ namespace percale {
 
 enum class ValueKind {
   Number,      ///< double
-  Integer,     ///< double holding a whole number
+  Integer,     ///< double holding a whole number; `choices`, if any, name 0, 1, ...
   Boolean,     ///< bool
   Choice,      ///< string, one of `choices`
   Text,        ///< string
