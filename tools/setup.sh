@@ -78,7 +78,7 @@ ensure_packages() {
     # The lists of packages are missing or out of date.
     say "fetching the lists of packages (apt-get update)"
     if ! { "${as_root[@]+"${as_root[@]}"}" apt-get -q update && apt_install $names; } >>"$log" 2>&1; then
-      tail -n 15 "$log" >&2
+      grep -E '^[EW]: ' "$log" | head -n 10 >&2 || tail -n 10 "$log" >&2
       rm -f "$log"
       if [ $needed = no ]; then
         say "$names could not be installed: videos become numbered pictures"
@@ -144,7 +144,10 @@ build_preset() {
     while IFS= read -r line; do
       printf '%s\n' "$line" >>"$log"
       case $line in
-        FAILED:* | "ninja: error:"* | "CMake Error"*) failed=yes ;;
+        FAILED:* | "ninja: error:"* | "CMake Error"*)
+          if [ $failed = no ] && [ $shown = yes ] && [ -t 2 ]; then echo >&2; fi
+          failed=yes
+          ;;
         "["[0-9]*) [ $failed = yes ] || show_progress "$preset" "$line" ;;
       esac
       [ $failed = no ] || printf '%s\n' "$line" >&2
@@ -167,7 +170,7 @@ show_progress() {
   if [ -t 2 ]; then
     printf '\r\033[Kpercale: building (%s) %s' "$1" "${count#[}" >&2
   elif [ "$shown" = no ]; then
-    say "building ($1), ${count##*/} steps; a first build takes minutes"
+    say "building ($1), ${count##*/} steps"
   fi
   shown=yes
 }
