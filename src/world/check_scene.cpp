@@ -33,7 +33,7 @@ class Checker {
     CheckValues();
     // What follows computes with the values, so it needs them to be in range.
     if (HasErrors(diagnostics_)) return std::move(diagnostics_);
-    if (scene_.cloths.empty()) Error("/cloth", "expected at least one cloth, got none");
+    if (scene_.cloths.empty()) Error("/cloth", "expected at least one cloth, got none; state an object \"cloth\"");
     CheckSize();
     for (std::size_t c = 0; c < scene_.cloths.size(); ++c) CheckCloth(c);
     for (std::size_t p = 0; p < scene_.planes.size(); ++p) CheckPlane(p);

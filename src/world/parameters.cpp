@@ -285,12 +285,12 @@ std::vector<Parameter> MakeTable() {
     Simulation<&S::selfCollision>({.name = "self_collision", .label = "Self-collision",
       .help = "Points of cloth keep apart, within a cloth and between cloths."}),
     Simulation<&S::hash>({.name = "hash", .label = "Hash function",
-      .help = "How the spatial map numbers its boxes: exact shares none; linear and powers are the write-up's; brute compares all points."}),
+      .help = "How the map of boxes is kept: exact; the write-up's linear and powers, which share boxes; brute force."}),
     Simulation<&S::planeResponse>({.name = "plane_response", .label = "Plane response",
-      .help = "Where a point that crossed a plane is put: interpolate: where it crossed; offset: above its foot; hold: where it was."}),
+      .help = "Where a point that crossed is put: interpolate: where it crossed; offset: above its foot; hold: back."}),
 
     Camera<&CameraSettings::automatic>({.name = "automatic", .label = "Automatic",
-      .help = "The camera looks at the cloths as the course does; false as soon as another key of the camera is stated."}),
+      .help = "Look at the cloths as the course does; false as soon as another key of the camera is stated."}),
     Camera<&CameraSettings::target>({.name = "target", .label = "Target", .unit = "m", .min = -kFarthest,
       .max = kFarthest,
       .typicalMin = -2, .typicalMax = 2, .help = "The point looked at."}),
@@ -304,7 +304,7 @@ std::vector<Parameter> MakeTable() {
       .typicalMin = -89, .typicalMax = 89, .help = "Above the horizon."}),
 
     Look<&LookSettings::shader>({.name = "shader", .label = "Shader",
-      .help = "Name of a file shaders/NAME.frag: Wireframe, Normal, Diffuse, Phong, Texture, Bump, Displacement, Mirror, Flag, or your own."}),
+      .help = "Name of a file shaders/NAME.frag, such as Wireframe, Normal, Phong, Texture, Mirror, or your own."}),
     Look<&LookSettings::color>({.name = "color", .label = "Colour", .min = 0, .max = 1,
       .typicalMin = 0, .typicalMax = 1, .help = "Base colour of cloths and spheres: red, green, blue."}),
     Look<&LookSettings::normalScaling>({.name = "normal_scaling", .label = "Normal scale", .min = -1000, .max = 1000,
@@ -312,7 +312,7 @@ std::vector<Parameter> MakeTable() {
     Look<&LookSettings::heightScaling>({.name = "height_scaling", .label = "Height scale", .min = -1000, .max = 1000,
       .typicalMin = 0, .typicalMax = 1, .help = "How far Displacement moves the surface."}),
     Look<&LookSettings::tangents>({.name = "tangents", .label = "Tangents",
-      .help = "constant: (1, 0, 0) everywhere on a cloth, as in the course; from_uv: along its width, as it really lies."}),
+      .help = "constant: (1, 0, 0) on all of a cloth, as in the course; from_uv: along its width as it lies."}),
   };
 }
 // clang-format on

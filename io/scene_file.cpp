@@ -1,0 +1,421 @@
+#include "percale/scene_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/text.h"
+#include "io/json_document.h"
+#include "percale/parameters.h"
+
+namespace percale {
+namespace {
+
+constexpr std::size_t kMostMessages = 1000;
+constexpr double kLargestInt = 2147483647;
+
+bool IsComment(std::string_view key) {
+  return !key.empty() && key[0] == '_';
+}
+
+std::vector<std::string_view> SplitPath(std::string_view path) {
+  std::vector<std::string_view> parts;
+  while (!path.empty()) {
+    path.remove_prefix(1);  // the '/'
+    const std::size_t end = path.find('/');
+    parts.push_back(path.substr(0, end));
+    path = end == std::string_view::npos ? std::string_view() : path.substr(end);
+  }
+  return parts;
+}
+
+/// Turns a document into a scene and collects everything that is wrong with it.
+class SceneReader {
+ public:
+  SceneReader(const JsonDocument& document, Origins* origins) : document_(document), origins_(origins) {}
+
+  Result<Scene> Read(const std::string& name) {
+    scene_.name = name;
+    if (document_.Kind(kRoot) != JsonKind::Object) {
+      return document_.About(
+          kRoot, Severity::Error,
+          "expected a scene, a JSON object such as {\"cloth\": {...}}, got " + document_.Source(kRoot));
+    }
+    JsonIndex sphere = 0, plane = 0;
+    for (const JsonIndex member : document_.Children(kRoot)) {
+      const std::string& key = document_.Key(member);
+      if (IsComment(key)) continue;
+      const ParameterGroup* group = FindGroup(key);
+      if (!group) {
+        ReportUnknown(member, "", {});
+        continue;
+      }
+      if (key == "sphere") sphere = member;
+      if (key == "plane") plane = member;
+      ReadGroup(*group, member);
+    }
+    scene_.planesFirst = plane != 0 && sphere != 0 && plane < sphere;
+    CheckWhole();
+    return Finish();
+  }
+
+ private:
+  static constexpr JsonIndex kRoot = 0;
+
+  void Error(JsonIndex value, const std::string& message) {
+    diagnostics_.push_back(document_.About(value, Severity::Error, message));
+  }
+
+  void ReadGroup(const ParameterGroup& group, JsonIndex value) {
+    const std::string path = "/" + std::string(group.name);
+    if (group.isArray && document_.Kind(value) == JsonKind::Array) {
+      const std::vector<JsonIndex> objects = document_.Children(value);
+      group.resize(scene_, objects.size());
+      for (std::size_t i = 0; i < objects.size(); ++i) {
+        const std::string place = path + "/" + std::to_string(i);
+        ReadObject(group, i, objects[i], place, place);
+      }
+      return;
+    }
+    if (document_.Kind(value) != JsonKind::Object) {
+      Error(value, path + ": expected an object" + (group.isArray ? " or an array of objects" : "") + ", got " +
+                       document_.Source(value));
+      failed_.insert(path);
+      return;
+    }
+    group.resize(scene_, 1);
+    ReadObject(group, 0, value, path, group.isArray ? path + "/0" : path);
+  }
+
+  /// `path` is how the file reads, `canonical` how it would with every group in an array.
+  void ReadObject(const ParameterGroup& group, std::size_t index, JsonIndex object, const std::string& path,
+                  const std::string& canonical) {
+    const std::size_t before = diagnostics_.size();
+    if (document_.Kind(object) != JsonKind::Object) {
+      Error(object, path + ": expected an object, got " + document_.Source(object));
+      failed_.insert(canonical);
+      return;
+    }
+    std::set<std::string_view> stated;
+    for (const JsonIndex member : document_.Children(object)) {
+      const std::string& key = document_.Key(member);
+      if (IsComment(key)) continue;
+      const Parameter* parameter = FindParameter(group.name, key);
+      if (!parameter) {
+        ReportUnknown(member, path, group.name);
+        continue;
+      }
+      stated.insert(parameter->name);
+      const std::string valuePath = path + "/" + key;
+      const std::optional<Value> value = Convert(*parameter, member, valuePath);
+      if (!value) continue;
+      if (const auto problem = CheckValue(*parameter, *value)) {
+        Error(member, valuePath + ": " + *problem);
+        continue;
+      }
+      parameter->set(scene_, index, *value);
+      if (origins_) (*origins_)[canonical + "/" + key] = document_.PlaceOf(member);
+    }
+    for (const Parameter& parameter : Parameters()) {
+      if (parameter.group != group.name || !parameter.required || stated.count(parameter.name) > 0) continue;
+      Error(object, path + "/" + std::string(parameter.name) + ": this key is missing; expected " +
+                        DescribeExpected(parameter) + ", such as " + FormatValue(DefaultValue(parameter)));
+    }
+    // Who places the camera by hand does not want it placed automatically, unless they say so.
+    if (group.name == "camera" && !stated.empty() && stated.count("automatic") == 0) scene_.camera.automatic = false;
+    if (diagnostics_.size() > before) failed_.insert(canonical);
+  }
+
+  /// The value of the parameter's kind, not yet checked against its range; reports what is none.
+  std::optional<Value> Convert(const Parameter& parameter, JsonIndex value, const std::string& path) {
+    const auto wrong = [&] {
+      Error(value, path + ": expected " + DescribeExpected(parameter) + ", got " + document_.Source(value));
+      return std::nullopt;
+    };
+    const JsonKind kind = document_.Kind(value);
+    switch (parameter.kind) {
+      case ValueKind::Number:
+      case ValueKind::Integer:
+        if (kind != JsonKind::Number) return wrong();
+        return document_.Number(value);
+      case ValueKind::Boolean:
+        if (kind != JsonKind::Boolean) return wrong();
+        return document_.Boolean(value);
+      case ValueKind::Choice:
+      case ValueKind::Text:
+        if (kind != JsonKind::Text) return wrong();
+        return document_.Text(value);
+      case ValueKind::Vector: {
+        if (kind != JsonKind::Array) return wrong();
+        const std::vector<JsonIndex> parts = document_.Children(value);
+        if (parts.size() != 3) return wrong();
+        double numbers[3] = {};
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (!ReadNumber(parts[k], path + "/" + std::to_string(k), numbers[k])) return std::nullopt;
+        }
+        return Vec3{numbers[0], numbers[1], numbers[2]};
+      }
+      case ValueKind::GridPoints:
+        break;
+    }
+    if (kind != JsonKind::Array) return wrong();
+    return ConvertPoints(value, path);
+  }
+
+  std::optional<Value> ConvertPoints(JsonIndex value, const std::string& path) {
+    std::vector<GridPoint> points;
+    const std::size_t before = diagnostics_.size();
+    const std::vector<JsonIndex> elements = document_.Children(value);
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+      const std::string place = path + "/" + std::to_string(k);
+      const bool isArray = document_.Kind(elements[k]) == JsonKind::Array;
+      const std::vector<JsonIndex> ij = document_.Children(elements[k]);
+      if (!isArray || ij.size() != 2) {
+        Error(elements[k],
+              place + ": expected a point [i, j], two whole numbers, got " + document_.Source(elements[k]));
+        continue;
+      }
+      double numbers[2] = {};
+      if (ReadWhole(ij[0], place + "/0", numbers[0]) && ReadWhole(ij[1], place + "/1", numbers[1])) {
+        points.push_back({static_cast<int>(numbers[0]), static_cast<int>(numbers[1])});
+      }
+    }
+    if (diagnostics_.size() > before) return std::nullopt;
+    return points;
+  }
+
+  bool ReadNumber(JsonIndex value, const std::string& path, double& number) {
+    if (document_.Kind(value) != JsonKind::Number) {
+      Error(value, path + ": expected a number, got " + document_.Source(value));
+      return false;
+    }
+    number = document_.Number(value);
+    return true;
+  }
+  bool ReadWhole(JsonIndex value, const std::string& path, double& number) {
+    const bool isNumber = document_.Kind(value) == JsonKind::Number;
+    number = isNumber ? document_.Number(value) : 0;
+    if (isNumber && std::trunc(number) == number && std::abs(number) <= kLargestInt) return true;
+    Error(value, path + ": expected a whole number, got " + document_.Source(value));
+    return false;
+  }
+
+  /// A key that nothing knows, at the top level (`path` empty) or in an object of `group`.
+  void ReportUnknown(JsonIndex member, const std::string& path, std::string_view group) {
+    const std::string& key = document_.Key(member);
+    std::vector<std::string_view> known;
+    std::string owners;
+    if (group.empty()) {
+      for (const ParameterGroup& g : ParameterGroups()) known.push_back(g.name);
+    } else if (FindGroup(key)) {
+      owners = "; it belongs to the top level of the file";
+    }
+    for (const Parameter& parameter : Parameters()) {
+      if (parameter.group == group) known.push_back(parameter.name);
+      if (parameter.name == key) {
+        owners += (owners.empty() ? "; it belongs into `" : " or `") + std::string(parameter.group) + "`";
+      }
+    }
+    std::string hint = owners.empty() ? DidYouMean(key, known) : owners;
+    if (hint.empty()) {
+      hint = "; known are ";
+      for (std::size_t k = 0; k < known.size(); ++k) hint += (k > 0 ? ", " : "") + std::string(known[k]);
+      hint += ", and keys that begin with '_' for comments";
+    }
+    const std::string quoted = Quote(key, 40);  // its escapes, without the quotes
+    diagnostics_.push_back(document_.AboutKey(
+        member, Severity::Error, path + "/" + quoted.substr(1, quoted.size() - 2) + ": unknown key" + hint));
+  }
+
+  /// What concerns several values at once, at the place of the value that it names.
+  void CheckWhole() {
+    const bool clothFailed = Failed("/cloth", true);
+    for (Diagnostic& found : CheckScene(scene_)) {
+      const std::size_t colon = found.message.find(": ");
+      const std::vector<std::string_view> parts = SplitPath(std::string_view(found.message).substr(0, colon));
+      const std::string object = "/" + std::string(parts[0]) +
+                                 (FindGroup(parts[0])->isArray && parts.size() > 1 ? "/" + std::string(parts[1]) : "");
+      // A value that could not be read stands at its default, which is nothing to complain about.
+      if (Failed(object, false) || Failed("/" + std::string(parts[0]), false)) continue;
+      if (parts[0] == "pin_motion" && clothFailed) continue;
+      if (found.severity == Severity::Warning && Failed("/simulation", false)) continue;
+      auto [value, path] = Locate(parts);
+      diagnostics_.push_back(document_.About(value, found.severity, path + found.message.substr(colon)));
+    }
+  }
+
+  /// Whether reading that object failed; with `orPart`, or any below it.
+  bool Failed(const std::string& object, bool orPart) const {
+    if (!orPart) return failed_.count(object) > 0;
+    const auto next = failed_.lower_bound(object);
+    return next != failed_.end() && next->compare(0, object.size(), object) == 0;
+  }
+
+  /// The value with that canonical path, or the nearest above it that the file states; and the path
+  /// as the file would write it.
+  std::pair<JsonIndex, std::string> Locate(const std::vector<std::string_view>& parts) const {
+    std::string path;
+    JsonIndex value = kRoot;
+    bool found = true;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const bool isIndexOfSingle = k == 1 && FindGroup(parts[0])->isArray && document_.Kind(value) == JsonKind::Object;
+      if (isIndexOfSingle) continue;
+      path += "/" + std::string(parts[k]);
+      if (!found) continue;
+      JsonIndex next = 0;
+      if (document_.Kind(value) == JsonKind::Object) {
+        next = document_.Member(value, parts[k]);
+      } else if (const auto index = ParseNumber(parts[k])) {
+        const std::vector<JsonIndex> children = document_.Children(value);
+        if (*index < static_cast<double>(children.size())) next = children[static_cast<std::size_t>(*index)];
+      }
+      found = next != 0;
+      if (found) value = next;
+    }
+    return {value, path};
+  }
+
+  Result<Scene> Finish() {
+    std::stable_sort(diagnostics_.begin(), diagnostics_.end(), [](const Diagnostic& a, const Diagnostic& b) {
+      return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+    });
+    const bool failed = HasErrors(diagnostics_);
+    if (diagnostics_.size() > kMostMessages) {
+      const std::size_t more = diagnostics_.size() - kMostMessages;
+      // Errors stay before warnings, so that none of them is what is left out while a warning is not.
+      std::stable_partition(diagnostics_.begin(), diagnostics_.end(),
+                            [](const Diagnostic& d) { return d.severity == Severity::Error; });
+      diagnostics_.resize(kMostMessages);
+      diagnostics_.push_back(
+          {Severity::Note, {scene_.name, 0, 0}, "and " + std::to_string(more) + " more problems", {}, 0});
+    }
+    if (failed) return std::move(diagnostics_);
+    return {std::move(scene_), std::move(diagnostics_)};
+  }
+
+  const JsonDocument& document_;
+  Origins* origins_;
+  Scene scene_;
+  std::set<std::string> failed_;  ///< Canonical paths of the objects with an error.
+  Diagnostics diagnostics_;
+};
+
+Result<Scene> ReadScene(const Result<JsonDocument>& document, const std::string& name, Origins* origins) {
+  if (origins) origins->clear();
+  if (!document) return document.diagnostics();
+  return SceneReader(*document, origins).Read(name);
+}
+
+// The schema.
+
+std::string Range(const Parameter& p) {
+  std::string out;
+  if (std::isfinite(p.min))
+    out += (p.minExclusive ? ", \"exclusiveMinimum\": " : ", \"minimum\": ") + FormatNumber(p.min);
+  if (std::isfinite(p.max)) out += ", \"maximum\": " + FormatNumber(p.max);
+  return out;
+}
+
+std::string TypeSchema(const Parameter& p) {
+  switch (p.kind) {
+    case ValueKind::Number:
+      return "\"type\": \"number\"" + Range(p);
+    case ValueKind::Integer:
+      return "\"type\": \"integer\"" + Range(p);
+    case ValueKind::Boolean:
+      return "\"type\": \"boolean\"";
+    case ValueKind::Choice: {
+      std::string out = "\"enum\": [";
+      for (std::size_t k = 0; k < p.choices.size(); ++k) out += (k > 0 ? ", " : "") + Quote(p.choices[k]);
+      return out + "]";
+    }
+    case ValueKind::Text:
+      return "\"type\": \"string\", \"minLength\": 1";
+    case ValueKind::Vector:
+      return "\"type\": \"array\", \"items\": {\"type\": \"number\"" + Range(p) + "}, \"minItems\": 3, \"maxItems\": 3";
+    case ValueKind::GridPoints:
+      break;
+  }
+  return "\"type\": \"array\", \"items\": {\"type\": \"array\", \"items\": {\"type\": \"integer\", \"minimum\": 0}, "
+         "\"minItems\": 2, \"maxItems\": 2}";
+}
+
+std::string GroupSchema(const ParameterGroup& group) {
+  std::string properties, required;
+  for (const Parameter& p : Parameters()) {
+    if (p.group != group.name) continue;
+    const std::string unit = p.unit.empty() ? "" : " [" + std::string(p.unit) + "]";
+    properties += (properties.empty() ? "" : ",\n") + std::string("        ") + Quote(p.name) + ": {" + TypeSchema(p) +
+                  ", \"title\": " + Quote(p.label) + ", \"description\": " + Quote(std::string(p.help) + unit) +
+                  ", \"default\": " + FormatValue(DefaultValue(p)) + "}";
+    if (p.required) required += (required.empty() ? "" : ", ") + Quote(p.name);
+  }
+  return "    " + Quote(group.name) + ": {\n      \"type\": \"object\",\n      \"description\": " + Quote(group.help) +
+         ",\n      \"properties\": {\n" + properties + "\n      },\n      \"required\": [" + required +
+         "],\n      \"patternProperties\": {\"^_\": true},\n      \"additionalProperties\": false\n    }";
+}
+
+}  // namespace
+
+Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins) {
+  return ReadScene(JsonDocument::Load(file), file.string(), origins);
+}
+
+Result<Scene> ParseScene(const std::string& text, const std::string& name, Origins* origins) {
+  return ReadScene(JsonDocument::Parse(text, name), name, origins);
+}
+
+std::string FormatScene(const Scene& scene) {
+  std::vector<std::string_view> order;
+  for (const ParameterGroup& group : ParameterGroups()) order.push_back(group.name);
+  if (scene.planesFirst) {
+    std::iter_swap(std::find(order.begin(), order.end(), "sphere"), std::find(order.begin(), order.end(), "plane"));
+  }
+
+  const auto formatObject = [&](std::string_view group, std::size_t index, const std::string& indent) {
+    std::string out;
+    for (const Parameter& parameter : Parameters()) {
+      if (parameter.group != group) continue;
+      out += (out.empty() ? "{\n" : ",\n") + indent + "  " + Quote(parameter.name) + ": " +
+             FormatValue(parameter.get(scene, index));
+    }
+    return out + "\n" + indent + "}";
+  };
+  std::string out;
+  for (const std::string_view name : order) {
+    const std::size_t count = FindGroup(name)->count(scene);
+    if (count == 0) continue;
+    out += (out.empty() ? "{\n  " : ",\n  ") + Quote(name) + ": ";
+    if (count == 1) {
+      out += formatObject(name, 0, "  ");
+      continue;
+    }
+    for (std::size_t i = 0; i < count; ++i) out += (i == 0 ? "[\n    " : ",\n    ") + formatObject(name, i, "    ");
+    out += "\n  ]";
+  }
+  return out + "\n}\n";
+}
+
+std::string SceneSchema() {
+  std::string definitions, properties, required;
+  for (const ParameterGroup& group : ParameterGroups()) {
+    const std::string one = "{\"$ref\": \"#/$defs/" + std::string(group.name) + "\"}";
+    const std::string least = group.required ? ", \"minItems\": 1" : "";
+    definitions += (definitions.empty() ? "" : ",\n") + GroupSchema(group);
+    properties +=
+        (properties.empty() ? "" : ",\n") + std::string("    ") + Quote(group.name) + ": " +
+        (group.isArray ? "{\"anyOf\": [" + one + ", {\"type\": \"array\", \"items\": " + one + least + "}]}" : one);
+    if (group.required) required += (required.empty() ? "" : ", ") + Quote(group.name);
+  }
+  return "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"Percale scene\",\n"
+         "  \"type\": \"object\",\n  \"properties\": {\n" +
+         properties + "\n  },\n  \"required\": [" + required +
+         "],\n  \"patternProperties\": {\"^_\": true},\n  \"additionalProperties\": false,\n  \"$defs\": {\n" +
+         definitions + "\n  }\n}\n";
+}
+
+}  // namespace percale
