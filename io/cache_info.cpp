@@ -17,6 +17,7 @@
 
 #include "core/text.h"
 #include "io/atomic_file.h"
+#include "io/cache_kind.h"
 #include "percale/mesh_file.h"
 
 namespace percale {
@@ -485,14 +486,19 @@ Result<CacheInfo> ReadCacheInfo(const fs::path& file) {
   if (!stream || code) return MakeError(PathText(file), "cannot be read: " + std::generic_category().message(errno));
 
   Reader reader(file, stream.get(), size);
-  std::string extension = PathText(file.extension());
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  if (const auto kind = CacheKindOf(file)) {
+    switch (*kind) {
+      case CacheKind::Csv:
+        return ReadCsv(reader);
+      case CacheKind::Obj:
+        return ReadObj(reader);
+      case CacheKind::Ply:
+        return ReadPly(reader);
+      case CacheKind::Pc2:
+        return ReadPc2(reader);
+    }
   }
-  if (extension == ".pc2") return ReadPc2(reader);
-  if (extension == ".obj") return ReadObj(reader);
-  if (extension == ".ply") return ReadPly(reader);
-  if (extension == ".csv") return ReadCsv(reader);
+  const std::string extension = PathText(file.extension());
   return MakeError(PathText(file), "expected a file that ends in .csv, .obj, .ply or .pc2, got " +
                                        (extension.empty() ? "no extension" : Quote(extension, 20)));
 }

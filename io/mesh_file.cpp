@@ -11,6 +11,7 @@
 
 #include "core/text.h"
 #include "io/atomic_file.h"
+#include "io/cache_kind.h"
 
 namespace percale {
 namespace {
@@ -230,32 +231,6 @@ fs::path Numbered(const fs::path& file, int frame) {
   return file.parent_path() / name;
 }
 
-std::string LowerExtension(const fs::path& file) {
-  std::string extension = PathText(file.extension());
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
-}
-
-enum class FileKind { Csv, Obj, Ply, Pc2 };
-
-std::optional<FileKind> KindOf(const fs::path& file) {
-  const std::string extension = LowerExtension(file);
-  if (extension == ".csv") return FileKind::Csv;
-  if (extension == ".obj") return FileKind::Obj;
-  if (extension == ".ply") return FileKind::Ply;
-  if (extension == ".pc2") return FileKind::Pc2;
-  // A table can be piped on: /dev/stdout has no extension to go by.
-  std::error_code ignored;
-  const fs::file_status status = fs::status(file, ignored);
-  if (extension.empty() && fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {
-    return FileKind::Csv;
-  }
-  if (extension.empty() && PathText(file).rfind("/dev/", 0) == 0) return FileKind::Csv;
-  return std::nullopt;
-}
-
 /// The positions are numbers, and within the range of the format.
 Status CheckPositions(const World& world, const fs::path& file, int frame, double limit) {
   for (int c = 0; c < world.ClothCount(); ++c) {
@@ -281,7 +256,7 @@ struct CacheWriter::Impl {
   };
 
   fs::path target;
-  FileKind kind = FileKind::Csv;
+  CacheKind kind = CacheKind::Csv;
   double frameSeconds = 0;
   std::vector<Frame> files;        // one, or one per frame
   std::optional<AtomicFile> mesh;  // beside a .pc2
@@ -290,7 +265,7 @@ struct CacheWriter::Impl {
   int frames = 0;
   bool failed = false;
 
-  bool OneFilePerFrame() const { return kind == FileKind::Obj || kind == FileKind::Ply; }
+  bool OneFilePerFrame() const { return kind == CacheKind::Obj || kind == CacheKind::Ply; }
   fs::path MeshPath() const {
     fs::path path = target;
     path += ".obj";
@@ -304,8 +279,8 @@ struct CacheWriter::Impl {
       return MakeError(PathText(target),
                        "cannot hold " + std::to_string(vertices) + " vertices; the format ends at 2147483647");
     }
-    if (kind == FileKind::Csv) return files[0].file.Write("frame,cloth,vertex,x,y,z\n");
-    if (kind != FileKind::Pc2) return Ok();
+    if (kind == CacheKind::Csv) return files[0].file.Write("frame,cloth,vertex,x,y,z\n");
+    if (kind != CacheKind::Pc2) return Ok();
     Sink header(files[0].file);
     const double start = frame == 0 ? 0 : world.report().time;
     WritePc2Header(header, std::int32_t(vertices), start, frameSeconds);
@@ -326,7 +301,7 @@ struct CacheWriter::Impl {
                                              std::to_string(VertexCount(world)) + " and " + std::to_string(vertices));
     }
     const double limit =
-        kind == FileKind::Pc2 ? double(std::numeric_limits<float>::max()) : std::numeric_limits<double>::max();
+        kind == CacheKind::Pc2 ? double(std::numeric_limits<float>::max()) : std::numeric_limits<double>::max();
     if (Status status = CheckPositions(world, target, frame, limit); !status) return status;
 
     if (OneFilePerFrame()) {
@@ -344,16 +319,16 @@ struct CacheWriter::Impl {
     AtomicFile& file = files.back().file;
     Sink sink(file);
     switch (kind) {
-      case FileKind::Csv:
+      case CacheKind::Csv:
         WriteRows(sink, world, frame);
         break;
-      case FileKind::Obj:
+      case CacheKind::Obj:
         WriteObj(sink, world);
         break;
-      case FileKind::Ply:
+      case CacheKind::Ply:
         WritePly(sink, world, frame);
         break;
-      case FileKind::Pc2:
+      case CacheKind::Pc2:
         for (int c = 0; c < world.ClothCount(); ++c) {
           for (const Vec3& x : world.Cloth(c).positions()) {
             for (const double value : {x.x, x.y, x.z}) sink.Float(float(value));
@@ -374,7 +349,7 @@ CacheWriter::CacheWriter(CacheWriter&&) noexcept = default;
 CacheWriter& CacheWriter::operator=(CacheWriter&&) noexcept = default;
 
 Result<CacheWriter> CacheWriter::Open(const fs::path& file, double frameSeconds) {
-  const auto kind = KindOf(file);
+  const auto kind = CacheKindOf(file);
   if (!kind) {
     const std::string extension = PathText(file.extension());
     return MakeError(PathText(file), "expected a file that ends in .csv, .obj, .ply or .pc2, got " +
@@ -406,7 +381,7 @@ Result<std::vector<fs::path>> CacheWriter::Finish() {
   if (impl->failed) return MakeError(PathText(impl->target), "a frame could not be written");
   if (impl->frames == 0) return MakeError(PathText(impl->target), "there are no frames to write");
 
-  if (impl->kind == FileKind::Pc2) {
+  if (impl->kind == CacheKind::Pc2) {
     const auto samples = static_cast<std::uint32_t>(impl->frames);
     std::array<unsigned char, 4> bytes{};
     for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<unsigned char>((samples >> (8 * i)) & 0xff);
