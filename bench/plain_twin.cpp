@@ -8,10 +8,10 @@
 namespace percale::bench {
 namespace {
 
-constexpr double kStretchLimit = 1.1;     // Provot 1995, section 5
-constexpr double kPlaneOffset = 1e-4;     // m
-constexpr double kBendingShare = 0.2;     // of ks
-constexpr Vec3 kNoDirection{0, 1, 0};     // for coincident points
+constexpr double kStretchLimit = 1.1;  // Provot 1995, section 5
+constexpr double kPlaneOffset = 1e-4;  // m
+constexpr double kBendingShare = 0.2;  // of ks
+constexpr Vec3 kNoDirection{0, 1, 0};  // for coincident points
 
 // The generator of the vertical sheet's random z: splitmix64.
 std::uint64_t NextRandom(std::uint64_t& state) {
@@ -167,17 +167,16 @@ void PlainTwin::ApplyWind() {
   const WindSettings& wind = scene_.wind;
   if (wind.drag == 0) return;
   const double time = time_;
-  const Vec3 air =
-      wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
+  const Vec3 air = wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
   for (int cloth = 0; cloth < static_cast<int>(scene_.cloths.size()); ++cloth) {
     const ClothSettings& c = scene_.cloths[static_cast<std::size_t>(cloth)];
     for (int j = 0; j < c.numHeightPoints; ++j) {
       for (int i = 0; i < c.numWidthPoints; ++i) {
         PointMass& point = At(cloth, i, j);
-        const Vec3 alongWidth = At(cloth, std::min(i + 1, c.numWidthPoints - 1), j).position -
-                                At(cloth, std::max(i - 1, 0), j).position;
-        const Vec3 alongHeight = At(cloth, i, std::min(j + 1, c.numHeightPoints - 1)).position -
-                                 At(cloth, i, std::max(j - 1, 0)).position;
+        const Vec3 alongWidth =
+            At(cloth, std::min(i + 1, c.numWidthPoints - 1), j).position - At(cloth, std::max(i - 1, 0), j).position;
+        const Vec3 alongHeight =
+            At(cloth, i, std::min(j + 1, c.numHeightPoints - 1)).position - At(cloth, i, std::max(j - 1, 0)).position;
         const Vec3 normal = Cross(alongWidth, alongHeight);  // four times the point's area long
         const double length = Length(normal);
         if (length == 0) continue;
@@ -208,10 +207,14 @@ std::uint64_t PlainTwin::Hash(const Vec3& position) const {
     return result;
   };
   switch (scene_.simulation.hash) {
-    case HashFunction::Linear: return static_cast<std::uint64_t>(7 * box.x + 5 * box.y + 3 * box.z);
-    case HashFunction::Powers: return power(box.x, 6) + power(box.y, 4) + power(box.z, 2);
-    case HashFunction::Brute: return 0;
-    case HashFunction::Exact: break;
+    case HashFunction::Linear:
+      return static_cast<std::uint64_t>(7 * box.x + 5 * box.y + 3 * box.z);
+    case HashFunction::Powers:
+      return power(box.x, 6) + power(box.y, 4) + power(box.z, 2);
+    case HashFunction::Brute:
+      return 0;
+    case HashFunction::Exact:
+      break;
   }
   const std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
   return (static_cast<std::uint64_t>(box.x) & mask) | (static_cast<std::uint64_t>(box.y) & mask) << 21 |
@@ -257,11 +260,15 @@ void PlainTwin::CollideWithPlane(PointMass& point, const PlaneSettings& plane) {
   const double side = before >= 0 ? 1 : -1;
   Vec3 target;
   switch (scene_.simulation.planeResponse) {
-    case PlaneResponse::Hold: point.position = point.previous; return;
+    case PlaneResponse::Hold:
+      point.position = point.previous;
+      return;
     case PlaneResponse::Interpolate:
       target = point.previous + (before / (before - after)) * (point.position - point.previous);
       break;
-    case PlaneResponse::Offset: target = point.position - after * normal; break;
+    case PlaneResponse::Offset:
+      target = point.position - after * normal;
+      break;
   }
   target += side * kPlaneOffset * normal;
   point.position = point.previous + (1 - plane.friction) * (target - point.previous);
@@ -291,6 +298,19 @@ std::vector<Vec3> PlainTwin::Positions(int cloth) const {
     if (point.cloth == cloth) result.push_back(point.position);
   }
   return result;
+}
+
+void PlainTwin::SetScene(const Scene& scene) {
+  scene_ = scene;
+  dt_ = scene_.TimeStep();
+}
+
+void PlainTwin::SetPositions(int cloth, std::span<const Vec3> positions) {
+  std::size_t next = firstPoint_[static_cast<std::size_t>(cloth)];
+  for (const Vec3& position : positions) {
+    points_[next].position = points_[next].previous = position;
+    ++next;
+  }
 }
 
 PlainTwin::PairCount PlainTwin::CountPairs() const {

@@ -7,7 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -26,6 +26,11 @@ class PlainTwin {
   /// Positions of a cloth's points [m], in index order.
   std::vector<Vec3> Positions(int cloth) const;
   std::size_t PointCount() const { return points_.size(); }
+
+  /// Takes changed settings of the same grids: everything that may change while a simulation runs.
+  void SetScene(const Scene& scene);
+  /// Puts a cloth's points somewhere else, at rest [m].
+  void SetPositions(int cloth, std::span<const Vec3> positions);
   /// Pairs within 2 * thickness that the last step's spatial map did not bring together, and pairs
   /// that it brought together from different boxes; for the table of hash functions.
   struct PairCount {
