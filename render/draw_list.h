@@ -20,8 +20,8 @@ using Color = std::array<float, 4>;
 /// A surface, one array per attribute, in single precision as the card wants it.
 struct DrawMesh {
   std::vector<float> positions;          ///< x y z per vertex [m].
-  std::vector<float> normals;            ///< x y z per vertex, unit.
-  std::vector<float> tangents;           ///< x y z per vertex, unit.
+  std::vector<float> normals;            ///< x y z 0 per vertex, unit.
+  std::vector<float> tangents;           ///< x y z 0 per vertex, unit.
   std::vector<float> uv;                 ///< u v per vertex.
   std::vector<std::uint32_t> triangles;  ///< Three vertices each.
   std::vector<std::uint32_t> lines;      ///< Two vertices each: the springs.

@@ -3,6 +3,7 @@
 /// 4 x 4 matrices for drawing. Column vectors, column-major storage, as OpenGL has them.
 
 #include <array>
+#include <cstddef>
 
 #include "percale/vec3.h"
 
@@ -20,9 +21,6 @@ Mat4 operator*(const Mat4& a, const Mat4& b);
 
 /// (point, 1) transformed, and divided by the resulting w.
 Vec3 TransformPoint(const Mat4& a, const Vec3& point);
-
-/// The inverse; the identity where there is none.
-Mat4 Inverse(const Mat4& a);
 
 /// Camera space from world space, for an eye that looks at `target`. `up` must not be parallel to the view.
 Mat4 LookAt(const Vec3& eye, const Vec3& target, const Vec3& up);

@@ -58,15 +58,16 @@ class SceneView {
 };
 
 /// Vertex normals, each the sum of its triangles' normals weighted by their areas, made unit;
-/// (0, 0, 1) where there is none. `positions` and `normals` hold x y z per vertex.
+/// (0, 0, 1) where there is none. `positions` holds x y z per vertex, `normals` x y z 0.
 void ComputeNormals(std::span<const float> positions, std::span<const Triangle> triangles, std::span<float> normals);
 
 /// Vertex tangents along growing u, at right angles to the normals; (1, 0, 0) where there is none.
+/// `tangents` holds x y z 0 per vertex.
 void ComputeTangents(std::span<const float> positions, std::span<const Vec2> uv, std::span<const float> normals,
                      std::span<const Triangle> triangles, std::span<float> tangents);
 
 /// The unit sphere as a grid of `latitudes` x `longitudes` quads, with uv = (longitude, latitude) in
-/// 0..1 from the south pole up, its seam at -z (away from the course's camera), tangents along
+/// 0..1 from the north pole down, its seam at -z (away from the course's camera), tangents along
 /// growing longitude.
 DrawMesh MakeSphereMesh(int latitudes, int longitudes);
 

@@ -1,0 +1,172 @@
+#include "render/scene_view.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+namespace percale {
+namespace {
+
+// Flat triangles cut corners: at its full radius the drawn cloth would dip into the drawn sphere.
+constexpr double kDrawnSphereRadius = 0.92;
+constexpr Color kPlaneColor{0.7f, 0.7f, 0.7f, 1};
+constexpr Color kOverlayColor{0.08f, 0.08f, 0.08f, 1};
+
+// One cloth's mesh and what it was made of.
+struct ClothMesh {
+  std::shared_ptr<DrawMesh> mesh = std::make_shared<DrawMesh>();
+  std::vector<Triangle> triangles;
+  std::vector<Vec2> uv;
+};
+
+// Copies `from` into `to`; returns whether that changed anything.
+template <class T>
+bool Replace(std::vector<T>& to, std::span<const T> from) {
+  if (to.size() == from.size() && (from.empty() || std::memcmp(to.data(), from.data(), from.size_bytes()) == 0))
+    return false;
+  to.assign(from.begin(), from.end());
+  return true;
+}
+
+void Update(ClothMesh& cloth, const ClothShape& shape, Tangents tangents) {
+  DrawMesh& mesh = *cloth.mesh;
+  const std::size_t count = shape.positions.size();
+  assert(shape.uv.size() == count);
+  bool isOther = mesh.VertexCount() != count;
+  mesh.positions.resize(count * 3);
+  mesh.normals.resize(count * 4);
+  for (std::size_t i = 0; i < count; ++i) {
+    mesh.positions[3 * i + 0] = static_cast<float>(shape.positions[i].x);
+    mesh.positions[3 * i + 1] = static_cast<float>(shape.positions[i].y);
+    mesh.positions[3 * i + 2] = static_cast<float>(shape.positions[i].z);
+  }
+  if (Replace(cloth.uv, shape.uv)) {
+    isOther = true;
+    mesh.uv.clear();
+    for (const Vec2& uv : shape.uv) mesh.uv.insert(mesh.uv.end(), {float(uv.x), float(uv.y)});
+  }
+  static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t) && sizeof(Edge) == 2 * sizeof(std::uint32_t));
+  if (Replace(cloth.triangles, shape.triangles)) {
+    isOther = true;
+    mesh.triangles.resize(shape.triangles.size() * 3);
+    if (!shape.triangles.empty())
+      std::memcpy(mesh.triangles.data(), shape.triangles.data(), shape.triangles.size_bytes());
+  }
+  const auto* lines = reinterpret_cast<const std::uint32_t*>(shape.springs.data());
+  isOther |= Replace(mesh.lines, std::span<const std::uint32_t>(lines, shape.springs.size() * 2));
+
+  ComputeNormals(mesh.positions, shape.triangles, mesh.normals);
+  if (tangents == Tangents::FromUv) {
+    mesh.tangents.resize(count * 4);
+    ComputeTangents(mesh.positions, shape.uv, mesh.normals, shape.triangles, mesh.tangents);
+  } else {
+    mesh.tangents.assign(count * 4, 0);
+    for (std::size_t i = 0; i < count; ++i) mesh.tangents[4 * i] = 1;
+  }
+  mesh.shapeVersion += 1;
+  if (isOther) mesh.meshVersion += 1;
+}
+
+}  // namespace
+
+struct SceneView::Impl {
+  std::vector<ClothMesh> cloths;
+  std::shared_ptr<DrawMesh> sphere;
+  int sphereLatitudes = 0, sphereLongitudes = 0;
+  std::vector<PlaneSettings> planeSettings;
+  std::vector<std::shared_ptr<DrawMesh>> planes;
+  std::vector<ClothShape> shapes;  // Of a World's cloths, while its list is made.
+  DrawList list;
+
+  void UpdateColliders(const Scene& scene, const View& view) {
+    const int latitudes = std::max(2, view.sphereLatitudes), longitudes = std::max(3, view.sphereLongitudes);
+    if (!scene.spheres.empty() && (!sphere || sphereLatitudes != latitudes || sphereLongitudes != longitudes)) {
+      sphere = std::make_shared<DrawMesh>(MakeSphereMesh(latitudes, longitudes));
+      sphereLatitudes = latitudes;
+      sphereLongitudes = longitudes;
+    }
+    planes.resize(scene.planes.size());
+    planeSettings.resize(scene.planes.size());
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const PlaneSettings& now = scene.planes[i];
+      if (planes[i] && planeSettings[i].point == now.point && planeSettings[i].normal == now.normal) continue;
+      planes[i] = std::make_shared<DrawMesh>(MakePlaneMesh(now.point, now.normal));
+      planeSettings[i] = now;
+    }
+  }
+};
+
+View View::ForScene(const Scene& scene) {
+  View view;
+  view.look = scene.look;
+  view.camera = OrbitCamera::ForScene(scene);
+  return view;
+}
+
+SceneView::SceneView() : impl_(std::make_unique<Impl>()) {}
+SceneView::~SceneView() = default;
+SceneView::SceneView(SceneView&&) noexcept = default;
+SceneView& SceneView::operator=(SceneView&&) noexcept = default;
+
+const DrawList& SceneView::Update(const World& world, const View& view, int width, int height) {
+  std::vector<ClothShape>& shapes = impl_->shapes;
+  shapes.clear();
+  for (int i = 0; i < world.ClothCount(); ++i) {
+    const ClothView cloth = world.Cloth(i);
+    shapes.push_back({cloth.positions(), cloth.uv(), cloth.triangles(), cloth.springs()});
+  }
+  return Update(world.scene(), shapes, view, width, height);
+}
+
+const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape> cloths, const View& view, int width,
+                                  int height) {
+  DrawList& list = impl_->list;
+  list.viewProjection = view.camera.ViewProjection(width, height);
+  list.cameraPosition = view.camera.position();
+  list.normalScaling = static_cast<float>(view.look.normalScaling);
+  list.heightScaling = static_cast<float>(view.look.heightScaling);
+  list.uniforms = view.uniforms;
+  list.textures = view.textures;
+  list.items.clear();
+
+  const Color color{float(view.look.color.x), float(view.look.color.y), float(view.look.color.z), 1};
+  const bool linesOnly = view.look.shader == "Wireframe";
+  impl_->cloths.resize(cloths.size());
+  for (std::size_t i = 0; view.cloths && i < cloths.size(); ++i) {
+    percale::Update(impl_->cloths[i], cloths[i], view.look.tangents);
+    DrawItem item{impl_->cloths[i].mesh, DrawItem::Primitive::Lines, view.look.shader, color, {}, false};
+    if (linesOnly) {
+      list.items.push_back(item);
+      continue;
+    }
+    item.primitive = DrawItem::Primitive::Triangles;
+    item.pushBack = view.wireframe;
+    list.items.push_back(item);
+  }
+
+  impl_->UpdateColliders(scene, view);
+  if (view.colliders) {
+    for (const SphereSettings& sphere : scene.spheres) {
+      DrawItem item{impl_->sphere, DrawItem::Primitive::Triangles, view.look.shader, color, {}, false};
+      const double radius = kDrawnSphereRadius * sphere.radius;
+      item.model(0, 0) = item.model(1, 1) = item.model(2, 2) = radius;
+      item.model(0, 3) = sphere.origin.x;
+      item.model(1, 3) = sphere.origin.y;
+      item.model(2, 3) = sphere.origin.z;
+      list.items.push_back(std::move(item));
+    }
+    for (const std::shared_ptr<DrawMesh>& plane : impl_->planes) {
+      list.items.push_back({plane, DrawItem::Primitive::Triangles, view.look.shader, kPlaneColor, {}, false});
+    }
+  }
+  if (view.cloths && view.wireframe && !linesOnly) {
+    for (const ClothMesh& cloth : impl_->cloths) {
+      list.items.push_back({cloth.mesh, DrawItem::Primitive::Lines, "Wireframe", kOverlayColor, {}, false});
+    }
+  }
+  return list;
+}
+
+}  // namespace percale
