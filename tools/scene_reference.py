@@ -7,6 +7,7 @@ describes. With --check changes nothing and exits 1 if the page is out of date.
 
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -86,8 +87,9 @@ def tables(schema):
         for key, parameter in node["properties"].items():
             parameter = resolve(schema, parameter)
             stated = "required" if key in required else default(parameter)
-            lines.append(f"| `{key}` | {cell(kind(schema, parameter))} | {cell(stated)} "
-                         f"| {cell(parameter.get('description', ''))} |")
+            # The schema has no place for units; they end the description.
+            text, unit = re.fullmatch(r"(.*?)( \[[^\]]+\])?", parameter.get("description", ""), re.DOTALL).groups()
+            lines.append(f"| `{key}` | {cell(kind(schema, parameter) + (unit or ''))} | {cell(stated)} | {cell(text)} |")
     return "\n".join(lines) + "\n"
 
 
