@@ -132,9 +132,10 @@ def check_file(root, path, only_home, report):
                 else "rooms are " + ", ".join(sorted(ROOMS)))
         report(path, 1, f"this file belongs to no room; {hint}")
         return
-    # What ends in _impl.h is meant to be included more than once, with other settings each time.
-    if path.endswith(".h") and not path.endswith("_impl.h") and not re.search(r"^#pragma once\b", text, re.MULTILINE):
-        report(path, 1, "a header starts with #pragma once")
+    # A part of another file, which may be included more than once with other settings, says so.
+    whole = re.search(r"^#pragma once\b", text, re.MULTILINE) or re.search(r"\bIncluded by\b", text[:500])
+    if path.endswith(".h") and not whole:
+        report(path, 1, 'a header starts with #pragma once, or says "Included by ..." if it is a part of another file')
 
     for line, mark, name in includes_of(text):
         heavy = next((entry for entry in HEAVY if re.fullmatch(entry[0], name)), None)

@@ -98,6 +98,7 @@ class CheckIncludes(unittest.TestCase):
         self.expect("src/world/a.cpp", "#include <percale/world.h>\n", "take quotes")
         self.expect("src/core/a.cpp", "#include <format>\n", "not in all compilers")
         self.expect("src/core/a.h", "#include <vector>\n", "#pragma once")
+        self.assertEqual(run({**GOOD, "src/core/a.h": "// Included by executor.cpp.\n"}), (0, []))
         self.expect("src/cloth/a.cpp", "int x;\n", "no room")
 
     def test_comments_and_strings_do_not_count(self):
