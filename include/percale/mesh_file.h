@@ -41,10 +41,10 @@ class CacheWriter {
 
 /// What a cache or mesh file holds, for `percale info`.
 struct CacheInfo {
-  std::string format;   ///< "PointCache2", "Wavefront OBJ", ...
+  std::string format;  ///< "PointCache2", "Wavefront OBJ", ...
   int frames = 0;
-  int vertices = 0;     ///< Per frame.
-  int triangles = 0;    ///< 0 where the format has none.
+  int vertices = 0;   ///< Per frame.
+  int triangles = 0;  ///< 0 where the format has none.
   double frameSeconds = 0;
   Vec3 boxMin, boxMax;  ///< Over all frames [m].
 };

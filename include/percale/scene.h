@@ -30,21 +30,21 @@ enum class PlaneResponse { Interpolate, Offset, Hold };
 enum class Tangents { Constant, FromUv };
 
 struct ClothSettings {
-  double width = 1;                ///< Extent [m], > 0.
-  double height = 1;               ///< Extent [m], > 0.
-  int numWidthPoints = 50;         ///< Grid points along the width, >= 2.
-  int numHeightPoints = 50;        ///< Grid points along the height, >= 2.
-  double thickness = 0.0095;       ///< Points of cloth keep 2 * thickness apart [m], >= 0.
+  double width = 1;                                   ///< Extent [m], > 0.
+  double height = 1;                                  ///< Extent [m], > 0.
+  int numWidthPoints = 50;                            ///< Grid points along the width, >= 2.
+  int numHeightPoints = 50;                           ///< Grid points along the height, >= 2.
+  double thickness = 0.0095;                          ///< Points of cloth keep 2 * thickness apart [m], >= 0.
   Orientation orientation = Orientation::Horizontal;  ///< Lies at y = 1 over x, z; or stands in x, y.
-  Vec3 origin;                     ///< Moves the whole sheet [m].
-  std::vector<GridPoint> pinned;   ///< Immovable points.
-  bool enableStructural = true;    ///< Springs to the left and upper neighbours.
-  bool enableShearing = true;      ///< Springs to the upper left and upper right neighbours.
-  bool enableBending = true;       ///< Springs to the second neighbours left and up.
-  double damping = 0.2;            ///< Share of the velocity lost per step [%], 0..100.
-  double density = 150;            ///< Areal density [kg/m^2], >= 0.
-  double ks = 5000;                ///< Spring constant [N/m], >= 0.
-  int seed = 184;                  ///< Of the vertical sheet's random z.
+  Vec3 origin;                                        ///< Moves the whole sheet [m].
+  std::vector<GridPoint> pinned;                      ///< Immovable points.
+  bool enableStructural = true;                       ///< Springs to the left and upper neighbours.
+  bool enableShearing = true;                         ///< Springs to the upper left and upper right neighbours.
+  bool enableBending = true;                          ///< Springs to the second neighbours left and up.
+  double damping = 0.2;                               ///< Share of the velocity lost per step [%], 0..100.
+  double density = 150;                               ///< Areal density [kg/m^2], >= 0.
+  double ks = 5000;                                   ///< Spring constant [N/m], >= 0.
+  int seed = 184;                                     ///< Of the vertical sheet's random z.
 };
 
 struct SphereSettings {
@@ -72,10 +72,10 @@ struct PinMotion {
 /// A viscous wind after Provot 1995, section 3.2: each point feels
 /// drag * area * (n . (wind - velocity)) n, n the cloth's unit normal.
 struct WindSettings {
-  Vec3 velocity;           ///< Of the air [m/s].
-  double drag = 0;         ///< [kg/(m^2 s)], >= 0; 0: still air that resists nothing.
-  double gustiness = 0;    ///< The speed swings by this share of itself, 0..1.
-  double gustPeriod = 1;   ///< [s], > 0.
+  Vec3 velocity;          ///< Of the air [m/s].
+  double drag = 0;        ///< [kg/(m^2 s)], >= 0; 0: still air that resists nothing.
+  double gustiness = 0;   ///< The speed swings by this share of itself, 0..1.
+  double gustPeriod = 1;  ///< [s], > 0.
 };
 
 struct SimulationSettings {
@@ -90,11 +90,11 @@ struct SimulationSettings {
 
 /// Where the picture is taken from. By default the camera sees the cloth as the course does.
 struct CameraSettings {
-  bool automatic = true;        ///< Ignore the rest: target and distance follow from the cloths.
-  Vec3 target;                  ///< Point looked at [m].
-  double distance = 1.8;        ///< From the target [m], > 0.
-  double azimuth = 0;           ///< Turn about +y [degree]; 0 looks along -z.
-  double elevation = 0;         ///< Above the horizon [degree], -89..89.
+  bool automatic = true;  ///< Ignore the rest: target and distance follow from the cloths.
+  Vec3 target;            ///< Point looked at [m].
+  double distance = 1.8;  ///< From the target [m], > 0.
+  double azimuth = 0;     ///< Turn about +y [degree]; 0 looks along -z.
+  double elevation = 0;   ///< Above the horizon [degree], -89..89.
 };
 
 struct LookSettings {

@@ -45,17 +45,17 @@ struct Divergence {
 
 /// What one frame did.
 struct StepReport {
-  int frame = 0;            ///< Frames since the start, this one included.
-  std::int64_t step = 0;    ///< Steps since the start.
-  double time = 0;          ///< Simulated time [s].
+  int frame = 0;                                   ///< Frames since the start, this one included.
+  std::int64_t step = 0;                           ///< Steps since the start.
+  double time = 0;                                 ///< Simulated time [s].
   std::array<double, kStageCount> stageSeconds{};  ///< Wall-clock time spent, by Stage [s].
-  double kineticEnergy = 0;    ///< [J]
-  double greatestStretch = 0;  ///< Greatest length over rest length of all springs.
-  double greatestMove = 0;     ///< Farthest way of a point over this frame [m].
-  std::int64_t selfContacts = 0;     ///< Pairs of cloth points pushed apart, summed over the steps.
-  std::int64_t colliderContacts = 0; ///< Points put back by a collider, summed over the steps.
-  std::int64_t limitedSprings = 0;   ///< Springs shortened by the strain limit, summed over the steps.
-  bool atRest = false;  ///< No point moved more than 1 mm over a frame, for 30 frames on end.
+  double kineticEnergy = 0;                        ///< [J]
+  double greatestStretch = 0;                      ///< Greatest length over rest length of all springs.
+  double greatestMove = 0;                         ///< Farthest way of a point over this frame [m].
+  std::int64_t selfContacts = 0;                   ///< Pairs of cloth points pushed apart, summed over the steps.
+  std::int64_t colliderContacts = 0;               ///< Points put back by a collider, summed over the steps.
+  std::int64_t limitedSprings = 0;                 ///< Springs shortened by the strain limit, summed over the steps.
+  bool atRest = false;                   ///< No point moved more than 1 mm over a frame, for 30 frames on end.
   std::optional<Divergence> divergence;  ///< Set: the state is the last good frame, stepping is over.
 };
 

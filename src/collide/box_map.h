@@ -23,17 +23,21 @@ class BoxMap {
     const auto b = static_cast<std::size_t>(bucket);
     return {members_.data() + first_[b], static_cast<std::size_t>(first_[b + 1] - first_[b])};
   }
-  /// Number of points before those of `bucket`, in bucket order; bucket may be BucketCount().
-  std::int32_t PointsBefore(int bucket) const { return first_[static_cast<std::size_t>(bucket)]; }
+  /// The same as arrays: all members, bucket after bucket, and per bucket the index of its first
+  /// member, with one more at the end.
+  std::span<const std::int32_t> Members() const { return members_; }
+  std::span<const std::int32_t> First() const { return {first_.data(), static_cast<std::size_t>(bucketCount_) + 1}; }
 
  private:
+  bool FindBuckets(std::span<const std::uint64_t> keys);
+
   struct Slot {
     std::uint64_t key = 0;
     std::uint32_t build = 0;  // the build that filled it; others count as empty
     std::int32_t bucket = 0;
   };
-  std::vector<Slot> table_;  // open addressing; its size is a power of two
-  int tableShift_ = 0;
+  std::vector<Slot> table_;  // open addressing
+  int tableBits_ = 0;        // 2^tableBits_ of its slots are in use; as few as serve, so that they stay in cache
   std::uint32_t build_ = 0;
   int bucketCount_ = 0;
   std::vector<std::int32_t> bucketOf_;  // per point

@@ -39,7 +39,8 @@ Executor::~Executor() = default;
 void Executor::Run(int chunks, ChunkFunction function, void* context) const {
 #if defined(PERCALE_PARALLEL_TBB)
   backend_->arena.execute([&] {
-    tbb::parallel_for(0, chunks, [&](int chunk) { function(context, chunk); }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        0, chunks, [&](int chunk) { function(context, chunk); }, tbb::simple_partitioner());
   });
 #elif defined(PERCALE_PARALLEL_STD)
   // Plain threads, slow to start but transparent to the thread sanitizer.

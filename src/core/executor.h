@@ -27,7 +27,8 @@ class Executor {
       for (int chunk = 0; chunk < chunks; ++chunk) body(chunk);
       return;
     }
-    Run(chunks, [](void* context, int chunk) { (*static_cast<std::remove_reference_t<Body>*>(context))(chunk); },
+    Run(
+        chunks, [](void* context, int chunk) { (*static_cast<std::remove_reference_t<Body>*>(context))(chunk); },
         const_cast<void*>(static_cast<const void*>(&body)));
   }
 

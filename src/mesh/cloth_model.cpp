@@ -45,11 +45,14 @@ ClothModel MakeGrid(const ClothSettings& settings) {
 bool Enabled(const ClothSettings& cloth, SpringKind kind) {
   switch (kind) {
     case SpringKind::Left:
-    case SpringKind::Up: return cloth.enableStructural;
+    case SpringKind::Up:
+      return cloth.enableStructural;
     case SpringKind::UpperLeft:
-    case SpringKind::UpperRight: return cloth.enableShearing;
+    case SpringKind::UpperRight:
+      return cloth.enableShearing;
     case SpringKind::TwoLeft:
-    case SpringKind::TwoUp: break;
+    case SpringKind::TwoUp:
+      break;
   }
   return cloth.enableBending;
 }

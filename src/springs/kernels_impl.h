@@ -2,10 +2,16 @@
 // namespace PERCALE_KERNELS first. No header with inline functions that other files compile too may
 // be included here: the linker would be free to keep the copy that not every processor runs.
 
+#include <math.h>
+#include <string.h>
+
 #include "springs/kernels.h"
 
 #if defined(__AVX2__)
 #include <immintrin.h>
+#endif
+#if defined(_MSC_VER)
+#include <intrin.h>
 #endif
 
 namespace percale::springs::PERCALE_KERNELS {
@@ -13,183 +19,209 @@ namespace {
 
 #if defined(_MSC_VER)
 #define PERCALE_RESTRICT __restrict
-#include <math.h>
-inline double Sqrt(double v) { return ::sqrt(v); }
+#define PERCALE_INLINE __forceinline
+inline double Sqrt(double v) {
+  return ::sqrt(v);
+}
+inline int LowestBit(std::uint64_t bits) {
+  unsigned long index;
+  _BitScanForward64(&index, bits);
+  return static_cast<int>(index);
+}
 #else
 #define PERCALE_RESTRICT __restrict__
-inline double Sqrt(double v) { return __builtin_sqrt(v); }
+#define PERCALE_INLINE __attribute__((always_inline)) inline
+inline double Sqrt(double v) {
+  return __builtin_sqrt(v);
+}
+inline int LowestBit(std::uint64_t bits) {
+  return __builtin_ctzll(bits);
+}
 #endif
 
 using Array = const double* PERCALE_RESTRICT;
 using OutArray = double* PERCALE_RESTRICT;
+
+#include "springs/pack4.h"
 
 /// Kinds in creation order, as in mesh/cloth_model.h.
 enum { kLeft, kUp, kUpperLeft, kUpperRight, kTwoLeft, kTwoUp, kKinds };
 constexpr int kDi[kKinds] = {-1, 0, -1, 1, -2, 0};
 constexpr int kDj[kKinds] = {0, -1, -1, -1, 0, -2};
 
-constexpr int kPad = 2;  // zeros on both sides of a row of spring forces
-
-inline int FirstColumn(int kind) { return kDi[kind] < 0 ? -kDi[kind] : 0; }
-inline int EndColumn(int kind, int numWidth) { return kDi[kind] > 0 ? numWidth - kDi[kind] : numWidth; }
-
-/// Force on the creators a of one row of springs, whose other ends are b.
-void SpringRow(int begin, int end, Array ax, Array ay, Array az, Array bx, Array by, Array bz, Array rest,
-               double stiffness, OutArray fx, OutArray fy, OutArray fz) {
-  for (int i = begin; i < end; ++i) {
-    const double dx = bx[i] - ax[i];
-    const double dy = by[i] - ay[i];
-    const double dz = bz[i] - az[i];
-    const double length = Sqrt(dx * dx + dy * dy + dz * dz);
-    const double ratio = stiffness * (length - rest[i]) / length;
-    const double factor = length > 0 ? ratio : 0;  // ends that coincide have no direction
-    fx[i] = dx * factor;
-    fy[i] = dy * factor;
-    fz[i] = dz * factor;
-  }
-}
-
-/// Adds the forces of the springs within a row, in creation order: a point's own, then those that
-/// its right neighbours created.
-void AddOwnForces(int n, double weight, Array extra, Array left, Array up, Array upperLeft, Array upperRight,
-                  Array twoLeft, Array twoUp, OutArray force) {
-  if (extra) {
-    for (int i = 0; i < n; ++i) {
-      force[i] = weight + extra[i] + left[i] + up[i] + upperLeft[i] + upperRight[i] + twoLeft[i] + twoUp[i] -
-                 left[i + 1] - twoLeft[i + 2];
-    }
-    return;
-  }
-  for (int i = 0; i < n; ++i) {
-    force[i] = weight + left[i] + up[i] + upperLeft[i] + upperRight[i] + twoLeft[i] + twoUp[i] - left[i + 1] -
-               twoLeft[i + 2];
-  }
-}
-
-/// The same for the springs that the row below created.
-void AddForcesOfNextRow(int n, Array up, Array upperLeft, Array upperRight, OutArray force) {
-  for (int i = 0; i < n; ++i) force[i] = force[i] - upperRight[i - 1] - up[i] - upperLeft[i + 1];
-}
-
-/// Verlet; `twoUp`, if any, are the forces of the springs from two rows below.
-std::int64_t VerletRow(int n, Array x, OutArray previous, Array force, const double* twoUp, double keep,
-                       double forceToWay, double bound) {
-  std::int64_t outOfBounds = 0;
-  if (twoUp) {
-    Array last = twoUp;
-    for (int i = 0; i < n; ++i) {
-      const double next = x[i] + keep * (x[i] - previous[i]) + forceToWay * (force[i] - last[i]);
-      outOfBounds += ((next <= bound) & (next >= -bound)) ? 0 : 1;
-      previous[i] = next;
-    }
-    return outOfBounds;
-  }
-  for (int i = 0; i < n; ++i) {
-    const double next = x[i] + keep * (x[i] - previous[i]) + forceToWay * force[i];
-    outOfBounds += ((next <= bound) & (next >= -bound)) ? 0 : 1;
-    previous[i] = next;
-  }
-  return outOfBounds;
-}
+constexpr int kPad = kGridPad;  // zeros on both sides of a row of spring forces
+constexpr double kNoSpring = kNoSpringRest;
 
 /// A point feels the springs of its own row, the next and the one after. So the rows are walked
 /// once: the springs of row j complete the forces of row j - 2, which then moves. Forces read
-/// positions only, and the new ones go where the previous ones were.
-std::int64_t Integrate(const IntegrateArgs& a) {
-  const int n = a.numWidth;
-  const int stride = n + 2 * kPad;
-  double* springForce[kKinds][3];
-  double* force[3][3];  // of rows j, j - 1, j - 2, in turn
-  double* free = a.scratch + kPad;
-  for (auto& kind : springForce) {
-    for (double*& axis : kind) axis = free, free += stride;
-  }
-  for (auto& row : force) {
-    for (double*& axis : row) axis = free, free += stride;
-  }
-
-  std::int64_t outOfBounds = 0;
-  const auto move = [&](int row, bool withTwoUp) {
-    const std::int64_t at = static_cast<std::int64_t>(row) * n;
-    for (int axis = 0; axis < 3; ++axis) {
-      outOfBounds += VerletRow(n, a.x[axis] + at, a.previous[axis] + at, force[row % 3][axis],
-                               withTwoUp ? springForce[kTwoUp][axis] : nullptr, a.keep, a.forceToWay, a.bound);
+/// positions only, and the new ones go where the previous ones were. Each point sums its forces in
+/// creation order: its own springs, then those created by its right neighbours, by the row below,
+/// and by the row after that.
+class Integrator {
+ public:
+  PERCALE_INLINE explicit Integrator(const IntegrateArgs& args) : a(args), n(args.numWidth) {
+    double* free = a.scratch + kPad;
+    for (auto& kind : spring) {
+      for (double*& axis : kind) axis = free, free += RowStride(n);
     }
-  };
-
-  const int last = a.rowEnd + 2 < a.numHeight ? a.rowEnd + 2 : a.numHeight;
-  for (int j = a.rowBegin; j < last; ++j) {
-    const std::int64_t at = static_cast<std::int64_t>(j) * n;
+    for (auto& row : force) {
+      for (double*& axis : row) axis = free, free += RowStride(n);
+    }
     for (int kind = 0; kind < kKinds; ++kind) {
-      const int begin = FirstColumn(kind), end = EndColumn(kind, n);
-      const bool exists = j + kDj[kind] >= 0;
-      // Beyond the last row that moves, only springs that reach back to it matter.
-      if (exists && j + kDj[kind] >= a.rowEnd) continue;
-      if (!exists || a.stiffness[kind] == 0) {
-        for (int axis = 0; axis < 3; ++axis) {
-          for (int i = begin; i < end; ++i) springForce[kind][axis][i] = 0;
+      step[kind] = static_cast<std::int64_t>(kDj[kind]) * n + kDi[kind];
+      stiffness[kind] = All(a.stiffness[kind]);
+    }
+  }
+
+  PERCALE_INLINE std::int64_t Run() {
+    const int last = a.rowEnd + 2 < a.numHeight ? a.rowEnd + 2 : a.numHeight;
+    for (int j = a.rowBegin; j < last; ++j) {
+      PrepareRow(j);
+      // Springs are bound by division, sums by memory: done side by side they overlap. The sums lag
+      // behind, since they need the springs of the columns to the right, and so far behind that
+      // what they load has left the store buffer.
+      for (int i = 0; i < n; i += kLanes) {
+        if (activeCount == kKinds) {
+          for (int kind = 0; kind < kKinds; ++kind) SpringBlock(kind, i);
+        } else {
+          for (int k = 0; k < activeCount; ++k) SpringBlock(active[k], i);
         }
+        if (i >= kLag) SumBlock(j, i - kLag);
+      }
+      for (int k = 0; k < activeCount; ++k) {
+        for (double* axis : spring[active[k]]) axis[n] = axis[n + 1] = 0;  // the last block wrote beyond the row
+      }
+      const int end = (n + kLanes - 1) / kLanes * kLanes;
+      for (int i = end > kLag ? end - kLag : 0; i < n; i += kLanes) SumBlock(j, i);
+    }
+    // The last rows of the sheet have none below them that would complete their forces.
+    withTwoUp = false;
+    for (int j = last - 2 > a.rowBegin ? last - 2 : a.rowBegin; j < a.rowEnd; ++j) {
+      moving = j;
+      for (int i = 0; i < n; i += kLanes) MoveBlock(i);
+    }
+    return outOfBounds;
+  }
+
+ private:
+  static constexpr int kLag = 4 * kLanes;
+
+  /// Decides which kinds of springs row j creates that matter, and which rows they complete.
+  PERCALE_INLINE void PrepareRow(int j) {
+    row = static_cast<std::int64_t>(j) * n;
+    activeCount = 0;
+    for (int kind = 0; kind < kKinds; ++kind) {
+      const int other = j + kDj[kind];
+      if (other >= a.rowEnd) continue;  // both ends beyond the rows that move
+      if (other >= 0 && a.stiffness[kind] != 0) {
+        active[activeCount++] = kind;
         continue;
       }
-      const std::int64_t other = at + static_cast<std::int64_t>(kDj[kind]) * n + kDi[kind];
-      SpringRow(begin, end, a.x[0] + at, a.x[1] + at, a.x[2] + at, a.x[0] + other, a.x[1] + other, a.x[2] + other,
-                a.rest[kind] + at, a.stiffness[kind], springForce[kind][0], springForce[kind][1],
-                springForce[kind][2]);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      if (j < a.rowEnd) {
-        AddOwnForces(n, a.weight[axis], a.extraForce[axis] ? a.extraForce[axis] + at : nullptr,
-                     springForce[kLeft][axis], springForce[kUp][axis], springForce[kUpperLeft][axis],
-                     springForce[kUpperRight][axis], springForce[kTwoLeft][axis], springForce[kTwoUp][axis],
-                     force[j % 3][axis]);
-      }
-      if (j - 1 >= a.rowBegin && j - 1 < a.rowEnd) {
-        AddForcesOfNextRow(n, springForce[kUp][axis], springForce[kUpperLeft][axis], springForce[kUpperRight][axis],
-                           force[(j - 1) % 3][axis]);
+      for (double* axis : spring[kind]) {
+        for (int i = 0; i < n; ++i) axis[i] = 0;
       }
     }
-    if (j - 2 >= a.rowBegin) move(j - 2, true);
+    sumOwn = j < a.rowEnd;
+    sumNext = j - 1 >= a.rowBegin && j - 1 < a.rowEnd;
+    withTwoUp = j - 2 >= a.rowBegin;
+    moving = j - 2;
   }
-  // The last rows of the sheet have none below them that would complete their forces.
-  for (int j = last - 2 > a.rowBegin ? last - 2 : a.rowBegin; j < a.rowEnd; ++j) move(j, false);
-  return outOfBounds;
-}
 
-std::int64_t CountLong(int begin, int end, Array ax, Array ay, Array az, Array bx, Array by, Array bz, Array rest,
-                       double limit) {
-  std::int64_t count = 0;
-  for (int i = begin; i < end; ++i) {
-    const double dx = bx[i] - ax[i];
-    const double dy = by[i] - ay[i];
-    const double dz = bz[i] - az[i];
-    const double longest = limit * rest[i];
-    count += dx * dx + dy * dy + dz * dz > longest * longest ? 1 : 0;
+  /// Forces on the creators of four springs.
+  PERCALE_INLINE void SpringBlock(int kind, int i) {
+    const std::int64_t at = row + i;
+    const Pack3 d = Load3(a.x, at + step[kind]) - Load3(a.x, at);
+    const Pack length = Sqrt(SquaredLength(d));
+    const Pack rest = Load(a.rest[kind] + at);
+    // Ends that coincide have no direction, and at the borders there is no spring.
+    const Mask pulls = (length > All(0)) & (All(kNoSpring) > rest);
+    const Pack factor = Where(pulls, stiffness[kind] * (length - rest) / length);
+    Store(spring[kind][0] + i, d.x * factor);
+    Store(spring[kind][1] + i, d.y * factor);
+    Store(spring[kind][2] + i, d.z * factor);
   }
-  return count;
+
+  PERCALE_INLINE void SumBlock(int j, int i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto of = [&](int kind, int column) { return Load(spring[kind][axis] + column); };
+      if (sumOwn) {
+        Pack sum = All(a.weight[axis]);
+        if (a.extraForce[axis]) sum = sum + Load(a.extraForce[axis] + row + i);
+        sum = sum + of(kLeft, i) + of(kUp, i) + of(kUpperLeft, i) + of(kUpperRight, i) + of(kTwoLeft, i) +
+              of(kTwoUp, i) - of(kLeft, i + 1) - of(kTwoLeft, i + 2);
+        Store(force[j % 3][axis] + i, sum);
+      }
+      if (sumNext) {
+        double* sum = force[(j + 2) % 3][axis] + i;
+        Store(sum, Load(sum) - of(kUpperRight, i - 1) - of(kUp, i) - of(kUpperLeft, i + 1));
+      }
+    }
+    if (withTwoUp) MoveBlock(i);
+  }
+
+  /// Verlet for four points of the row that moves.
+  PERCALE_INLINE void MoveBlock(int i) {
+    const std::int64_t at = static_cast<std::int64_t>(moving) * n + i;
+    const Pack bound = All(a.bound);
+    for (int axis = 0; axis < 3; ++axis) {
+      Pack sum = Load(force[moving % 3][axis] + i);
+      if (withTwoUp) sum = sum - Load(spring[kTwoUp][axis] + i);
+      const Pack x = Load(a.x[axis] + at);
+      const Pack next = x + All(a.keep) * (x - Load(a.previous[axis] + at)) + All(a.forceToWay) * sum;
+      const unsigned good = Bits((next <= bound) & (All(-a.bound) <= next));
+      if (i + kLanes <= n) {
+        Store(a.previous[axis] + at, next);
+        outOfBounds += good != 15u;
+        continue;
+      }
+      double lanes[kLanes];
+      Store(lanes, next);
+      for (int lane = 0; i + lane < n; ++lane) {
+        a.previous[axis][at + lane] = lanes[lane];
+        outOfBounds += !(good >> lane & 1u);
+      }
+    }
+  }
+
+  const IntegrateArgs a;
+  const int n;
+  double* spring[kKinds][3];  // forces on the creators of one row
+  double* force[3][3];        // of rows j, j - 1, j - 2, in turn
+  std::int64_t step[kKinds];
+  Pack stiffness[kKinds];
+  std::int64_t row = 0;
+  int active[kKinds] = {}, activeCount = 0;
+  bool sumOwn = false, sumNext = false, withTwoUp = false;
+  int moving = 0;
+  std::int64_t outOfBounds = 0;
+};
+
+std::int64_t Integrate(const IntegrateArgs& args) {
+  return Integrator(args).Run();
 }
 
 std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
-  const int n = a.numWidth;
-  const double limit = a.limit * (1 - 1e-12);  // squares round: rather mark one too many
+  const std::int64_t begin = static_cast<std::int64_t>(a.rowBegin) * a.numWidth;
+  const std::int64_t end = static_cast<std::int64_t>(a.rowEnd) * a.numWidth;
+  const Pack limit = All(a.limit * (1 - 1e-12));  // squares round: rather mark one too many
+  std::int64_t step[kKinds];
+  for (int kind = 0; kind < kKinds; ++kind) step[kind] = static_cast<std::int64_t>(kDj[kind]) * a.numWidth + kDi[kind];
+  for (std::int64_t p = begin; p < end; ++p) a.longKinds[p] = 0;
   std::int64_t total = 0;
-  for (int j = a.rowBegin; j < a.rowEnd; ++j) {
-    const std::int64_t at = static_cast<std::int64_t>(j) * n;
-    std::uint8_t* marks = a.longKinds + at;
-    for (int i = 0; i < n; ++i) marks[i] = 0;
+  for (std::int64_t p = begin; p < end; p += kLanes) {
+    // The last block overlaps the one before it: marking twice does no harm.
+    const std::int64_t at = p + kLanes <= end ? p : end - kLanes;
+    const Pack3 x = Load3(a.x, at);
+    Mask longer[kKinds];
     for (int kind = 0; kind < kKinds; ++kind) {
-      if (j + kDj[kind] < 0) continue;
-      const int begin = FirstColumn(kind), end = EndColumn(kind, n);
-      const std::int64_t other = at + static_cast<std::int64_t>(kDj[kind]) * n + kDi[kind];
-      const double* rest = a.rest[kind] + at;
-      const std::int64_t count = CountLong(begin, end, a.x[0] + at, a.x[1] + at, a.x[2] + at, a.x[0] + other,
-                                           a.x[1] + other, a.x[2] + other, rest, limit);
-      if (count == 0) continue;
-      total += count;
-      for (int i = begin; i < end; ++i) {
-        double squared = 0;
-        for (const double* axis : a.x) squared += (axis[other + i] - axis[at + i]) * (axis[other + i] - axis[at + i]);
-        const double longest = limit * rest[i];
-        marks[i] = static_cast<std::uint8_t>(marks[i] | (squared > longest * longest ? 1 << kind : 0));
+      const Pack longest = limit * Load(a.rest[kind] + at);
+      longer[kind] = SquaredLength(Load3(a.x, at + step[kind]) - x) > longest * longest;
+    }
+    if (Bits(longer[0] | longer[1] | longer[2] | longer[3] | longer[4] | longer[5]) == 0) continue;
+    for (int kind = 0; kind < kKinds; ++kind) {
+      for (unsigned bits = Bits(longer[kind]); bits != 0; bits &= bits - 1) {
+        a.longKinds[at + LowestBit(bits)] |= static_cast<std::uint8_t>(1u << kind);
+        ++total;
       }
     }
   }
@@ -205,7 +237,7 @@ inline std::uint64_t FloorBits(double v) {
   const double whole = rounded - kRounder;
   const double floored = rounded - (whole > v ? 1.0 : 0.0);
   std::uint64_t bits;
-  __builtin_memcpy(&bits, &floored, sizeof bits);
+  memcpy(&bits, &floored, sizeof bits);
   return bits & kIndexMask;
 }
 
@@ -218,85 +250,111 @@ void BoxKeys(const BoxKeyArgs& a) {
   }
 }
 
-constexpr int kLanes = 8;
-
-/// Which of eight points lie within a squared distance: a bit each.
-inline unsigned Within(Array x, Array y, Array z, double px, double py, double pz, double squared) {
-#if defined(__AVX512F__)
-  const __m512d dx = _mm512_sub_pd(_mm512_set1_pd(px), _mm512_loadu_pd(x));
-  const __m512d dy = _mm512_sub_pd(_mm512_set1_pd(py), _mm512_loadu_pd(y));
-  const __m512d dz = _mm512_sub_pd(_mm512_set1_pd(pz), _mm512_loadu_pd(z));
-  const __m512d sum =
-      _mm512_add_pd(_mm512_add_pd(_mm512_mul_pd(dx, dx), _mm512_mul_pd(dy, dy)), _mm512_mul_pd(dz, dz));
-  return _mm512_cmp_pd_mask(sum, _mm512_set1_pd(squared), _CMP_LE_OQ);
-#elif defined(__AVX2__)
-  unsigned bits = 0;
-  for (int half = 0; half < 2; ++half) {
-    const __m256d dx = _mm256_sub_pd(_mm256_set1_pd(px), _mm256_loadu_pd(x + 4 * half));
-    const __m256d dy = _mm256_sub_pd(_mm256_set1_pd(py), _mm256_loadu_pd(y + 4 * half));
-    const __m256d dz = _mm256_sub_pd(_mm256_set1_pd(pz), _mm256_loadu_pd(z + 4 * half));
-    const __m256d sum =
-        _mm256_add_pd(_mm256_add_pd(_mm256_mul_pd(dx, dx), _mm256_mul_pd(dy, dy)), _mm256_mul_pd(dz, dz));
-    bits |= static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(sum, _mm256_set1_pd(squared), _CMP_LE_OQ)))
-            << (4 * half);
-  }
-  return bits;
-#else
-  unsigned bits = 0;
-  for (int i = 0; i < kLanes; ++i) {
-    const double dx = px - x[i], dy = py - y[i], dz = pz - z[i];
-    bits |= static_cast<unsigned>(dx * dx + dy * dy + dz * dz <= squared) << i;
-  }
-  return bits;
-#endif
+/// Which of the points from `at` on lie within a squared distance of p: a bit each.
+inline unsigned Within(const double* const x[3], int at, const Pack3& p, Pack squared) {
+  return Bits(SquaredLength(p - Load3(x, at)) <= squared);
 }
 
-std::int64_t SeparateBucket(const BucketArgs& a) {
-  const int padded = (a.count + kLanes - 1) / kLanes * kLanes;
-  double* x = a.scratch;
-  double* y = x + padded;
-  double* z = y + padded;
-  for (int m = 0; m < a.count; ++m) {
-    x[m] = a.x[0][a.members[m]];
-    y[m] = a.x[1][a.members[m]];
-    z[m] = a.x[2][a.members[m]];
-  }
-  for (int m = a.count; m < padded; ++m) x[m] = y[m] = z[m] = 1e300;  // near nothing: its square is infinite
+/// The points of one bucket, in arrays of their own. Beyond them stand points that are near nothing.
+struct BucketPoints {
+  double* x[3];
+  int count;
+};
 
-  const double squared = a.greatestApart * a.greatestApart * (1 + 1e-12);  // squares round: rather look twice
+constexpr int kMostMasked = 64;
+
+/// For each point of a bucket of at most 64, a bit for every other that may come too close to it
+/// while the bucket's points move. Returns whether there is any.
+bool FindNear(const BucketPoints& b, Pack squared, std::uint64_t near[kMostMasked]) {
+  for (int m = 0; m < b.count; ++m) near[m] = 0;
+  bool any = false;
+  for (int m = 0; m + 1 < b.count; ++m) {
+    const Pack3 p = {All(b.x[0][m]), All(b.x[1][m]), All(b.x[2][m])};
+    for (int other = m + 1; other < b.count; other += kLanes) {
+      std::uint64_t bits = Within(b.x, other, p, squared);
+      if (bits == 0) continue;
+      any = true;
+      near[m] |= bits << other;
+      for (; bits != 0; bits &= bits - 1) near[other + LowestBit(bits)] |= std::uint64_t{1} << m;
+    }
+  }
+  return any;
+}
+
+/// The sum of pushes on one point.
+struct Push {
+  double x = 0, y = 0, z = 0;
+  int count = 0;
+
+  /// Adds the push of a point at distance vector d, if it is nearer than `apart`.
+  void Add(double dx, double dy, double dz, double apart) {
+    const double squared = dx * dx + dy * dy + dz * dz;
+    if (squared > apart * apart * (1 + 1e-12)) return;
+    const double distance = Sqrt(squared);
+    if (distance > apart) return;
+    const double push = apart - distance;
+    if (distance > 0) {
+      x += dx / distance * push;
+      y += dy / distance * push;
+      z += dz / distance * push;
+    } else {
+      y += push;  // points that coincide part along +y
+    }
+    ++count;
+  }
+};
+
+std::int64_t SeparateBucket(const BucketArgs& a, const std::int32_t* members, const BucketPoints& b, Pack nearSquared) {
+  std::uint64_t near[kMostMasked];
+  const bool masked = b.count <= kMostMasked;
+  if (masked && !FindNear(b, nearSquared, near)) return 0;
   std::int64_t contacts = 0;
-  for (int m = 0; m < a.count; ++m) {
-    const double px = x[m], py = y[m], pz = z[m];
-    double cx = 0, cy = 0, cz = 0;
-    int count = 0;
-    for (int base = 0; base < padded; base += kLanes) {
-      unsigned bits = Within(x + base, y + base, z + base, px, py, pz, squared);
-      if (m - base >= 0 && m - base < kLanes) bits &= ~(1u << (m - base));  // not itself
-      for (; bits != 0; bits &= bits - 1) {
-        const int o = base + __builtin_ctz(bits);
-        const double apart = a.thickness[a.members[m]] + a.thickness[a.members[o]];
-        const double dx = px - x[o], dy = py - y[o], dz = pz - z[o];
-        const double distance = Sqrt(dx * dx + dy * dy + dz * dz);
-        if (distance > apart) continue;
-        const double push = apart - distance;
-        if (distance > 0) {
-          cx += dx / distance * push;
-          cy += dy / distance * push;
-          cz += dz / distance * push;
-        } else {
-          cy += push;  // points that coincide part along +y
+  for (int m = 0; m < b.count; ++m) {
+    if (masked && near[m] == 0) continue;
+    const double px = b.x[0][m], py = b.x[1][m], pz = b.x[2][m], thickness = a.thickness[members[m]];
+    Push push;
+    const auto add = [&](int other) {
+      push.Add(px - b.x[0][other], py - b.x[1][other], pz - b.x[2][other], thickness + a.thickness[members[other]]);
+    };
+    if (masked) {
+      for (std::uint64_t bits = near[m]; bits != 0; bits &= bits - 1) add(LowestBit(bits));
+    } else {
+      const Pack3 p = {All(px), All(py), All(pz)};
+      for (int base = 0; base < b.count; base += kLanes) {
+        for (unsigned bits = Within(b.x, base, p, nearSquared); bits != 0; bits &= bits - 1) {
+          const int other = base + LowestBit(bits);
+          if (other != m) add(other);
         }
-        ++count;
       }
     }
-    contacts += count;
-    if (count == 0 || a.fixed[a.members[m]]) continue;
-    x[m] += cx / count / a.stepsPerFrame;
-    y[m] += cy / count / a.stepsPerFrame;
-    z[m] += cz / count / a.stepsPerFrame;
-    a.x[0][a.members[m]] = x[m];
-    a.x[1][a.members[m]] = y[m];
-    a.x[2][a.members[m]] = z[m];
+    contacts += push.count;
+    if (push.count == 0 || a.fixed[members[m]]) continue;
+    const double way[3] = {push.x / push.count / a.stepsPerFrame, push.y / push.count / a.stepsPerFrame,
+                           push.z / push.count / a.stepsPerFrame};
+    for (int axis = 0; axis < 3; ++axis) a.x[axis][members[m]] = b.x[axis][m] += way[axis];
+  }
+  return contacts;
+}
+
+std::int64_t SeparateBuckets(const BucketArgs& a) {
+  // No point moves farther than a part in stepsPerFrame of the distance that it keeps: farther pairs
+  // than that stay apart. Squares round: rather look twice.
+  const double farthest = a.greatestApart * (1 + 1 / a.stepsPerFrame);
+  const Pack nearSquared = All(farthest * farthest * (1 + 1e-12));
+  std::int64_t contacts = 0;
+  for (int bucket = a.bucketBegin; bucket < a.bucketEnd; ++bucket) {
+    const std::int32_t* members = a.members + a.first[bucket];
+    BucketPoints b;
+    b.count = a.first[bucket + 1] - a.first[bucket];
+    if (b.count < 2) continue;
+    const int room = b.count + kLanes;
+    for (int axis = 0; axis < 3; ++axis) {
+      double* PERCALE_RESTRICT to = b.x[axis] = a.scratch + axis * room;
+      const double* from = a.x[axis];
+      for (int m = 0; m < b.count; ++m) to[m] = from[members[m]];
+      Store(to + b.count, All(1e300));  // its square is infinite
+    }
+    contacts += SeparateBucket(a, members, b, nearSquared);
   }
   return contacts;
 }
@@ -395,15 +453,18 @@ std::int64_t CollidePlaneBy(const ColliderArgs& a) {
 
 std::int64_t CollidePlane(const ColliderArgs& a) {
   switch (a.response) {
-    case kInterpolate: return CollidePlaneBy<kInterpolate>(a);
-    case kOffset: return CollidePlaneBy<kOffset>(a);
-    default: return CollidePlaneBy<kHold>(a);
+    case kInterpolate:
+      return CollidePlaneBy<kInterpolate>(a);
+    case kOffset:
+      return CollidePlaneBy<kOffset>(a);
+    default:
+      return CollidePlaneBy<kHold>(a);
   }
 }
 
 }  // namespace
 
 extern const Kernels kKernels = {PERCALE_KERNELS_NAME, Integrate,     MarkLongSprings, BoxKeys,
-                                 SeparateBucket,       CollideSphere, CollidePlane};
+                                 SeparateBuckets,      CollideSphere, CollidePlane};
 
 }  // namespace percale::springs::PERCALE_KERNELS

@@ -3,20 +3,24 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <numbers>
+#include <utility>
 
 namespace percale::springs {
 namespace {
 
-constexpr double kStretchLimit = 1.1;       // of the rest length; Provot 1995, section 5
-constexpr double kBendingShare = 0.2;       // bending springs have this share of ks
-constexpr double kBoxesPerSpacing = 3;      // a box of the spatial map spans three spacings of the grid
-constexpr double kBound = 1e6;              // m; a cloth this far out has diverged
-constexpr int kPointsPerChunk = 4096;       // of loops over points; below it a second thread does not pay
-constexpr int kRowPointsPerChunk = 2048;    // of the forces, which cost more
+constexpr double kStretchLimit = 1.1;     // of the rest length; Provot 1995, section 5
+constexpr double kBendingShare = 0.2;     // bending springs have this share of ks
+constexpr double kBoxesPerSpacing = 3;    // a box of the spatial map spans three spacings of the grid
+constexpr double kBound = 1e6;            // m; a cloth this far out has diverged
+constexpr int kPointsPerChunk = 4096;     // of loops over points; below it a second thread does not pay
+constexpr int kRowPointsPerChunk = 2048;  // of the forces, which cost more
 constexpr int kBucketPointsPerChunk = 1024;
 
-std::size_t Index(std::int64_t i) { return static_cast<std::size_t>(i); }
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
 
 std::uint64_t Power(std::int64_t base, int exponent) {
   std::uint64_t result = 1;
@@ -34,6 +38,7 @@ std::int64_t BoxIndex(double coordinate, double size) {
 SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> models, const Executor& executor,
                              const Kernels& kernels)
     : executor_(executor), kernels_(kernels) {
+  int widest = 0;
   for (const ClothModel& model : models) {
     Sheet sheet;
     sheet.numWidth = model.numWidth;
@@ -43,7 +48,7 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
     sheet.kinds.assign(Index(model.PointCount()), 0);
     for (int kind = 0; kind < kSpringKinds; ++kind) {
       const auto [di, dj] = kSpringSteps[kind];
-      sheet.rest[kind].assign(Index(model.PointCount()), 0);
+      sheet.rest[kind].assign(Index(model.PointCount() + kGridPad), kNoSpringRest);
       for (int j = 0; j < model.numHeight; ++j) {
         for (int i = 0; i < model.numWidth; ++i) {
           if (i + di < 0 || i + di >= model.numWidth || j + dj < 0) continue;
@@ -53,6 +58,20 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
         }
       }
     }
+    for (int kind = 0; kind < kSpringKinds; ++kind) {
+      sheet.step[kind] = kSpringSteps[kind].dj * sheet.numWidth + kSpringSteps[kind].di;
+    }
+    for (int kind = 0; kind < kSpringKinds; ++kind) {
+      // The spring of kind `other` that ends at point e was created by e - step[other].
+      for (const int end : {0, sheet.step[kind]}) {
+        for (int other = 0; other < kSpringKinds; ++other) {
+          const int creator = end - sheet.step[other];
+          if (creator > 0) sheet.laterSprings[kind].push_back({creator, static_cast<std::uint8_t>(1u << other)});
+        }
+      }
+    }
+    sheet.kinds.resize(Index(model.PointCount() + 2 * model.numWidth + 2), 0);
+    widest = std::max(widest, sheet.numWidth);
     sheet.rowsPerChunk = sheet.numHeight;
     if (executor_.threads() > 1) {
       sheet.rowsPerChunk = std::max(16, (kRowPointsPerChunk + sheet.numWidth - 1) / sheet.numWidth);
@@ -69,22 +88,22 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
 
   const std::size_t count = Index(pointCount_);
   for (int axis = 0; axis < 3; ++axis) {
-    positions_[axis].resize(count);
-    previous_[axis].resize(count);
+    positionStore_[axis].resize(count + Index(GridPadding(widest) + kGridPad));
+    previousStore_[axis].resize(positionStore_[axis].size());
+    positions_[axis] = positionStore_[axis].data() + GridPadding(widest);
+    previous_[axis] = previousStore_[axis].data() + GridPadding(widest);
   }
   fixed_.assign(count, 0);
   for (const PinnedPoint& pin : pins_) fixed_[Index(pin.point)] = 1;
-  longKinds_.assign(count + 8, 0);
+  longKinds_.assign(count + 2 * Index(widest) + 8, 0);
   boxKeys_.resize(count);
   thickness_.resize(count);
   map_.Reserve(pointCount_);
-  int widest = 0;
-  for (const Sheet& sheet : sheets_) widest = std::max(widest, sheet.numWidth);
   scratchPerChunk_ = IntegrateScratch(widest);
   integrateScratch_.assign(Index(chunkCount_) * Index(scratchPerChunk_), 0);
   const int bucketChunks = pointCount_ / kBucketPointsPerChunk + 2;
   bucketChunkEnds_.reserve(Index(bucketChunks));
-  bucketScratch_.resize(3 * (count + 8 * Index(bucketChunks)));
+  bucketScratch_.resize(3 * (count + Index(kGridPad * bucketChunks)));
   chunkCounts_.resize(Index(std::max({chunkCount_, bucketChunks, pointCount_ / kPointsPerChunk + 1})));
   Configure(scene);
   Reset();
@@ -100,11 +119,12 @@ void SpringsEngine::Configure(const Scene& scene) {
     Sheet& sheet = sheets_[c];
     for (int kind = 0; kind < kSpringKinds; ++kind) {
       const bool bending = kind == static_cast<int>(SpringKind::TwoLeft) || kind == static_cast<int>(SpringKind::TwoUp);
-      sheet.stiffness[kind] =
-          !Enabled(cloth, static_cast<SpringKind>(kind)) ? 0 : bending ? kBendingShare * cloth.ks : cloth.ks;
+      sheet.stiffness[kind] = !Enabled(cloth, static_cast<SpringKind>(kind)) ? 0
+                              : bending                                      ? kBendingShare * cloth.ks
+                                                                             : cloth.ks;
     }
-    sheet.mass =
-        cloth.width * cloth.height * cloth.density / (static_cast<double>(cloth.numWidthPoints) * cloth.numHeightPoints);
+    sheet.mass = cloth.width * cloth.height * cloth.density /
+                 (static_cast<double>(cloth.numWidthPoints) * cloth.numHeightPoints);
     sheet.keep = 1 - cloth.damping / 100;
     width = std::max(width, kBoxesPerSpacing * cloth.width / cloth.numWidthPoints);
     height = std::max(height, kBoxesPerSpacing * cloth.height / cloth.numHeightPoints);
@@ -117,7 +137,7 @@ void SpringsEngine::Configure(const Scene& scene) {
   boxSize_[2] = std::max(width, height);
   bound_ = std::min(kBound, 0x1p50 * std::min(width, height));  // beyond it box indices would not be exact
   if (scene_.wind.drag > 0) {
-    for (auto& axis : windForce_) axis.resize(Index(pointCount_));
+    for (auto& axis : windForce_) axis.resize(Index(pointCount_ + kGridPad));
   }
 
   pinMotionOf_.clear();
@@ -128,9 +148,8 @@ void SpringsEngine::Configure(const Scene& scene) {
       const Sheet& sheet = sheets_[Index(motion.cloth)];
       const int vertex = pin.point - sheet.firstPoint;
       if (vertex < 0 || vertex >= sheet.PointCount()) continue;
-      const bool named = std::any_of(motion.points.begin(), motion.points.end(), [&](const GridPoint& g) {
-        return g.j * sheet.numWidth + g.i == vertex;
-      });
+      const bool named = std::any_of(motion.points.begin(), motion.points.end(),
+                                     [&](const GridPoint& g) { return g.j * sheet.numWidth + g.i == vertex; });
       if (named || motion.points.empty()) pinMotionOf_.push_back(static_cast<int>(m));
     }
     pin.motionCount = static_cast<int>(pinMotionOf_.size()) - pin.firstMotion;
@@ -192,8 +211,7 @@ void SpringsEngine::MoveColliders(double time) {
 
 void SpringsEngine::ComputeWind(double time) {
   const WindSettings& wind = scene_.wind;
-  const Vec3 air =
-      wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
+  const Vec3 air = wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
   const auto position = [&](int p) {
     return Vec3{positions_[0][Index(p)], positions_[1][Index(p)], positions_[2][Index(p)]};
   };
@@ -235,8 +253,8 @@ bool SpringsEngine::ApplyForces(double time) {
     args.rowEnd = rowEnd;
     const double weight[3] = {sheet.mass * gravity.x, sheet.mass * gravity.y, sheet.mass * gravity.z};
     for (int axis = 0; axis < 3; ++axis) {
-      args.x[axis] = positions_[axis].data() + sheet.firstPoint;
-      args.previous[axis] = previous_[axis].data() + sheet.firstPoint;
+      args.x[axis] = positions_[axis] + sheet.firstPoint;
+      args.previous[axis] = previous_[axis] + sheet.firstPoint;
       args.weight[axis] = weight[axis];
       args.extraForce[axis] = windy ? windForce_[axis].data() + sheet.firstPoint : nullptr;
     }
@@ -250,7 +268,7 @@ bool SpringsEngine::ApplyForces(double time) {
     args.scratch = integrateScratch_.data() + Index(chunk) * Index(scratchPerChunk_);
     chunkCounts_[Index(chunk)] = kernels_.integrate(args);
   });
-  for (int axis = 0; axis < 3; ++axis) positions_[axis].swap(previous_[axis]);
+  for (int axis = 0; axis < 3; ++axis) std::swap(positions_[axis], previous_[axis]);
   HoldPins(0, pointCount_);
   for (const PinnedPoint& pin : pins_) {
     previous_[0][Index(pin.point)] = pin.previousTarget.x;
@@ -277,7 +295,7 @@ void SpringsEngine::FindContacts() {
   ForPointChunks([&](int begin, int end, int) {
     if (hash == HashFunction::Exact) {
       kernels_.boxKeys({end - begin,
-                        {positions_[0].data() + begin, positions_[1].data() + begin, positions_[2].data() + begin},
+                        {positions_[0] + begin, positions_[1] + begin, positions_[2] + begin},
                         {boxSize_[0], boxSize_[1], boxSize_[2]},
                         boxKeys_.data() + begin});
       return;
@@ -292,12 +310,13 @@ void SpringsEngine::FindContacts() {
   });
   map_.Build(boxKeys_);
   bucketChunkEnds_.clear();
+  bucketChunkEnds_.clear();
+  const std::span<const std::int32_t> first = map_.First();
   std::int32_t before = 0;
   for (int bucket = 1; bucket <= map_.BucketCount(); ++bucket) {
-    const std::int32_t points = map_.PointsBefore(bucket);
-    if (points - before < kBucketPointsPerChunk && bucket < map_.BucketCount()) continue;
+    if (first[Index(bucket)] - before < kBucketPointsPerChunk && bucket < map_.BucketCount()) continue;
     bucketChunkEnds_.push_back(bucket);
-    before = points;
+    before = first[Index(bucket)];
   }
 }
 
@@ -305,24 +324,19 @@ void SpringsEngine::SelfCollide() {
   if (!scene_.simulation.selfCollision) return;
   const int chunks = static_cast<int>(bucketChunkEnds_.size());
   executor_.ForChunks(chunks, [&](int chunk) {
-    const int begin = chunk == 0 ? 0 : bucketChunkEnds_[Index(chunk - 1)];
-    const int end = bucketChunkEnds_[Index(chunk)];
     BucketArgs args{};
-    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis].data();
+    args.bucketBegin = chunk == 0 ? 0 : bucketChunkEnds_[Index(chunk - 1)];
+    args.bucketEnd = bucketChunkEnds_[Index(chunk)];
+    args.first = map_.First().data();
+    args.members = map_.Members().data();
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis];
     args.fixed = fixed_.data();
     args.thickness = thickness_.data();
     args.greatestApart = greatestApart_;
     args.stepsPerFrame = scene_.simulation.stepsPerFrame;
-    args.scratch = bucketScratch_.data() + 3 * (Index(map_.PointsBefore(begin)) + 8 * Index(chunk));
-    std::int64_t contacts = 0;
-    for (int bucket = begin; bucket < end; ++bucket) {
-      const std::span<const std::int32_t> members = map_.Bucket(bucket);
-      if (members.size() < 2) continue;
-      args.members = members.data();
-      args.count = static_cast<int>(members.size());
-      contacts += kernels_.separateBucket(args);
-    }
-    chunkCounts_[Index(chunk)] = contacts;
+    // No bucket of a chunk has more points than the chunk.
+    args.scratch = bucketScratch_.data() + 3 * (args.first[args.bucketBegin] + kGridPad * chunk);
+    chunkCounts_[Index(chunk)] = kernels_.separateBuckets(args);
   });
   counts_.selfContacts += SumChunkCounts(chunks) / 2;
 }
@@ -334,8 +348,8 @@ void SpringsEngine::Collide() {
     args.begin = begin;
     args.end = end;
     for (int axis = 0; axis < 3; ++axis) {
-      args.x[axis] = positions_[axis].data();
-      args.previous[axis] = previous_[axis].data();
+      args.x[axis] = positions_[axis];
+      args.previous[axis] = previous_[axis];
     }
     std::int64_t contacts = 0;
     const auto spheres = [&] {
@@ -371,7 +385,7 @@ void SpringsEngine::LimitStrain() {
     args.numWidth = sheet.numWidth;
     args.rowBegin = rowBegin;
     args.rowEnd = rowEnd;
-    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis].data() + sheet.firstPoint;
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis] + sheet.firstPoint;
     for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.rest[kind].data();
     args.limit = kStretchLimit;
     args.longKinds = longKinds_.data() + sheet.firstPoint;
@@ -389,46 +403,43 @@ void SpringsEngine::LimitStrain() {
 /// earlier spring moved is not too long, so the sweep visits marks only; where it moves a point, it
 /// marks the later springs there.
 void SpringsEngine::LimitSheet(const Sheet& sheet) {
-  const int n = sheet.numWidth, count = sheet.PointCount();
-  double* const x = positions_[0].data() + sheet.firstPoint;
-  double* const y = positions_[1].data() + sheet.firstPoint;
-  double* const z = positions_[2].data() + sheet.firstPoint;
+  const int count = sheet.PointCount();
+  double* const x = positions_[0] + sheet.firstPoint;
+  double* const y = positions_[1] + sheet.firstPoint;
+  double* const z = positions_[2] + sheet.firstPoint;
   std::uint8_t* const marks = longKinds_.data() + sheet.firstPoint;
   const std::uint8_t* const fixed = fixed_.data() + sheet.firstPoint;
-  int step[kSpringKinds];
-  for (int kind = 0; kind < kSpringKinds; ++kind) step[kind] = kSpringSteps[kind].dj * n + kSpringSteps[kind].di;
-
-  const auto markLater = [&](int moved, int creator, int kind) {
-    if (moved == creator) marks[moved] |= static_cast<std::uint8_t>(sheet.kinds[Index(moved)] & (~0u << (kind + 1)));
-    for (int k = 0; k < kSpringKinds; ++k) {
-      const int other = moved - step[k];  // the creator of the spring of kind k that ends at `moved`
-      if (other > creator && other < count) marks[other] |= static_cast<std::uint8_t>(sheet.kinds[Index(other)] & 1u << k);
-    }
-  };
-
+  const std::uint8_t* const kinds = sheet.kinds.data();
   std::int64_t limited = 0;
   for (int p = 0; p < count; ++p) {
-    for (unsigned kind = 0; marks[p] != 0; ++kind) {
+    if (marks[p] == 0) {
+      std::uint64_t eight;  // marks are few: step over stretches without any
+      std::memcpy(&eight, marks + p, sizeof eight);
+      if (eight == 0) p += 7;
+      continue;
+    }
+    Vec3 creator{x[p], y[p], z[p]};
+    for (int kind = 0; kind < kSpringKinds; ++kind) {
       if (!(marks[p] & 1u << kind)) continue;
-      marks[p] &= static_cast<std::uint8_t>(~(1u << kind));
-      const int q = p + step[kind];
+      const int q = p + sheet.step[kind];
       const double limit = kStretchLimit * sheet.rest[kind][Index(p)];
-      const Vec3 d{x[q] - x[p], y[q] - y[p], z[q] - z[p]};
-      const double length = Length(d);
+      const Vec3 d = Vec3{x[q], y[q], z[q]} - creator;
+      const double squared = Dot(d, d);
+      if (squared < limit * limit * (1 - 1e-12)) continue;  // surely short enough
+      const double length = std::sqrt(squared);
       if (length <= limit || (fixed[p] && fixed[q])) continue;
       const Vec3 excess = d * ((length - limit) / length);
+      const double shareP = fixed[p] ? 0 : fixed[q] ? 1 : 0.5;
+      const double shareQ = fixed[q] ? 0 : 1 - shareP;
+      creator += shareP * excess;
+      x[q] -= shareQ * excess.x, y[q] -= shareQ * excess.y, z[q] -= shareQ * excess.z;
       ++limited;
-      if (!fixed[p]) {
-        const Vec3 way = fixed[q] ? excess : 0.5 * excess;
-        x[p] += way.x, y[p] += way.y, z[p] += way.z;
-        markLater(p, p, static_cast<int>(kind));
-      }
-      if (!fixed[q]) {
-        const Vec3 way = fixed[p] ? excess : 0.5 * excess;
-        x[q] -= way.x, y[q] -= way.y, z[q] -= way.z;
-        markLater(q, p, static_cast<int>(kind));
+      marks[p] |= static_cast<std::uint8_t>(kinds[p] & (~0u << (kind + 1)));
+      for (const LaterSpring& later : sheet.laterSprings[kind]) {
+        marks[p + later.creator] |= static_cast<std::uint8_t>(kinds[p + later.creator] & later.kindBit);
       }
     }
+    x[p] = creator.x, y[p] = creator.y, z[p] = creator.z;
   }
   counts_.limitedSprings += limited;
 }
@@ -464,7 +475,7 @@ double SpringsEngine::GreatestStretch() const {
 SpringsEngine::Location SpringsEngine::FindOutOfBounds() const {
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     for (int v = 0; v < sheets_[s].PointCount(); ++v) {
-      for (const auto& axis : positions_) {
+      for (const double* axis : positions_) {
         if (!(std::abs(axis[Index(sheets_[s].firstPoint + v)]) <= bound_)) return {static_cast<int>(s), v};
       }
     }

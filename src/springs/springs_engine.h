@@ -23,15 +23,25 @@
 
 namespace percale::springs {
 
+/// A spring that touches the ends of a spring and comes after it: the point that creates it,
+/// relative to the creator of the first, and the bit of its kind.
+struct LaterSpring {
+  int creator;
+  std::uint8_t kindBit;
+};
+
 /// One cloth's part of the arrays.
 struct Sheet {
   int numWidth = 0, numHeight = 0;
   int firstPoint = 0;
-  std::vector<double> rest[kSpringKinds];  ///< Per point that creates the spring [m]; 0 where there is none.
-  std::vector<std::uint8_t> kinds;         ///< Per point: a bit for each kind of spring that it creates.
-  double stiffness[kSpringKinds] = {};     ///< [N/m]; 0 for kinds that are not enabled.
-  double mass = 0;                         ///< Of a point [kg].
-  double keep = 1;                         ///< Share of the velocity kept in a step.
+  std::vector<double>
+      rest[kSpringKinds];           ///< Per point that creates the spring [m]; kNoSpringRest where there is none.
+  std::vector<std::uint8_t> kinds;  ///< Per point: a bit for each kind of spring that it creates; then zeros.
+  int step[kSpringKinds] = {};      ///< From the index of the creator to that of the other end.
+  std::vector<LaterSpring> laterSprings[kSpringKinds];  ///< Of a spring of each kind.
+  double stiffness[kSpringKinds] = {};                  ///< [N/m]; 0 for kinds that are not enabled.
+  double mass = 0;                                      ///< Of a point [kg].
+  double keep = 1;                                      ///< Share of the velocity kept in a step.
   int rowsPerChunk = 1;
   int firstChunk = 0;
   int PointCount() const { return numWidth * numHeight; }
@@ -83,9 +93,9 @@ class SpringsEngine {
  private:
   struct PinnedPoint {
     int point;
-    Vec3 start;           // where it is without motions
-    Vec3 target;          // where it is now
-    Vec3 previousTarget;  // where it was one step ago
+    Vec3 start;                    // where it is without motions
+    Vec3 target;                   // where it is now
+    Vec3 previousTarget;           // where it was one step ago
     int firstMotion, motionCount;  // in pinMotionOf_
   };
 
@@ -106,8 +116,11 @@ class SpringsEngine {
   int chunkCount_ = 0;
   std::vector<Sheet> sheets_;
   std::vector<Vec3> start_;
-  // One array per axis: positions, and positions one step ago. They change places in every step.
-  std::vector<double> positions_[3], previous_[3];
+  // One array per axis, with padding around: positions, and positions one step ago. They change
+  // places in every step.
+  std::vector<double> positionStore_[3], previousStore_[3];
+  double* positions_[3] = {};
+  double* previous_[3] = {};
   std::vector<double> windForce_[3];
   std::vector<PinnedPoint> pins_;        // by point, ascending
   std::vector<int> pinMotionOf_;         // indices into scene_.pinMotions
@@ -120,10 +133,10 @@ class SpringsEngine {
   double greatestApart_ = 0;
   BoxMap map_;
   int scratchPerChunk_ = 0;
-  std::vector<double> integrateScratch_;           // per chunk of rows
-  std::vector<std::int64_t> chunkCounts_;          // per chunk of any loop
-  std::vector<std::int32_t> bucketChunkEnds_;      // last bucket of each chunk of SelfCollide
-  std::vector<double> bucketScratch_;              // per point, padded
+  std::vector<double> integrateScratch_;       // per chunk of rows
+  std::vector<std::int64_t> chunkCounts_;      // per chunk of any loop
+  std::vector<std::int32_t> bucketChunkEnds_;  // last bucket of each chunk of SelfCollide
+  std::vector<double> bucketScratch_;          // per point, padded
   Counts counts_;
 };
 

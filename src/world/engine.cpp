@@ -7,13 +7,17 @@ namespace {
 
 using springs::SpringsEngine;
 
-SpringsEngine& Self(void* engine) { return *static_cast<SpringsEngine*>(engine); }
-const SpringsEngine& Self(const void* engine) { return *static_cast<const SpringsEngine*>(engine); }
+SpringsEngine& Self(void* engine) {
+  return *static_cast<SpringsEngine*>(engine);
+}
+const SpringsEngine& Self(const void* engine) {
+  return *static_cast<const SpringsEngine*>(engine);
+}
 
 constexpr EngineTable kSprings = {
     .name = "springs",
-    .create = [](const Scene& scene, std::span<const ClothModel> models, const Executor& executor)
-        -> std::shared_ptr<void> {
+    .create = [](const Scene& scene, std::span<const ClothModel> models,
+                 const Executor& executor) -> std::shared_ptr<void> {
       return std::make_shared<SpringsEngine>(scene, models, executor, springs::BestKernels());
     },
     .configure = [](void* e, const Scene& scene) { Self(e).Configure(scene); },
@@ -43,7 +47,8 @@ constexpr EngineTable kSprings = {
 
 const EngineTable& FindEngine(Engine engine) {
   switch (engine) {
-    case Engine::Springs: break;
+    case Engine::Springs:
+      break;
   }
   return kSprings;
 }

@@ -42,7 +42,7 @@ struct EngineTable {
   double (*greatestStretch)(const void*);
   double (*mass)(const void*, int cloth);  ///< Of one point [kg].
   VertexRef (*findOutOfBounds)(const void*);
-  EngineCounts (*takeCounts)(void*);       ///< Since the last call.
+  EngineCounts (*takeCounts)(void*);  ///< Since the last call.
 };
 
 const EngineTable& FindEngine(Engine engine);

@@ -208,9 +208,15 @@ bool World::Apply(Scene scene) {
   return true;
 }
 
-const Scene& World::scene() const { return impl_->scene; }
-const StepReport& World::report() const { return impl_->report; }
-int World::ClothCount() const { return static_cast<int>(impl_->cloths.size()); }
+const Scene& World::scene() const {
+  return impl_->scene;
+}
+const StepReport& World::report() const {
+  return impl_->report;
+}
+int World::ClothCount() const {
+  return static_cast<int>(impl_->cloths.size());
+}
 
 ClothView World::Cloth(int index) const {
   assert(index >= 0 && index < ClothCount());
