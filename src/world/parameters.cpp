@@ -629,7 +629,7 @@ Result<std::vector<std::string>> ApplyAssignment(Scene& scene, std::string_view 
     const std::string_view index = path.substr(firstDot + 1, lastDot - firstDot - 1);
     if (!group->isArray) return fail(std::string(groupName) + " is a single object and takes no index");
     const auto number = ParseNumber(index);
-    if (!number || !IsWholeInt(*number) || *number < 0) {
+    if (!number || index.find_first_not_of("0123456789") != std::string_view::npos) {
       return fail("expected the index of a " + std::string(groupName) + ", such as " + std::string(groupName) + ".0." +
                   std::string(name) + ", got " + Quote(index, 40));
     }
