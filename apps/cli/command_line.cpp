@@ -1,0 +1,468 @@
+// The only file that includes CLI11, which takes seconds to compile.
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "apps/cli/options.h"
+#include "core/text.h"
+#include "io/atomic_file.h"
+
+namespace percale::cli {
+namespace {
+
+constexpr std::string_view kVerbs[] = {"view", "simulate", "shot",  "render", "check",
+                                       "info", "doctor",   "bench", "version"};
+
+constexpr int kMostFrames = 100'000'000;
+constexpr double kLongestTime = 1e6;  // s
+constexpr int kMostThreads = 1024;
+constexpr int kFinestSphere = 4096;
+constexpr int kLargestPicture = 16384;
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done; 1 failed, or an output cannot be written; 2 wrong command line; 3 invalid input;\n"
+    "4 the simulation diverged; 5 no graphics; 130 interrupted (what was done is kept).";
+
+/// Throws with the message that follows the option's name.
+[[noreturn]] void Refuse(const std::string& option, const std::string& expected, const std::string& found) {
+  throw CLI::ValidationError(option, "expected " + expected + ", got " + Quote(found, 60));
+}
+
+std::optional<double> AnyNumber(std::string_view text) {
+  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+  if (!text.empty() && text[0] == '.') return ParseNumber("0" + std::string(text));
+  if (text.substr(0, 2) == "-.") return ParseNumber("-0" + std::string(text.substr(1)));
+  return ParseNumber(text);
+}
+
+double Number(const std::string& option, const std::string& text, double min, double max, const std::string& expected) {
+  const auto number = AnyNumber(text);
+  if (!number || *number < min || *number > max) Refuse(option, expected, text);
+  return *number;
+}
+
+int Whole(const std::string& option, const std::string& text, int min, int max) {
+  const std::string expected = "a whole number " + std::to_string(min) + ".." + std::to_string(max);
+  const double number = Number(option, text, min, max, expected);
+  if (number != std::floor(number)) Refuse(option, expected, text);
+  return static_cast<int>(number);
+}
+
+bool LooksWhole(std::string_view text) {
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+std::vector<std::string> Split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+/// Adds the options of each kind to a verb. All verbs write into the same Options.
+class Builder {
+ public:
+  Builder(Options& options, std::string& positional, std::string& flag)
+      : options_(options), positional_(positional), flag_(flag) {}
+
+  void Scene(CLI::App& app, bool severalFiles) {
+    if (severalFiles) {
+      Add(app, "FILE", "Files; without any, scene/pinned2.json of the project", options_.files, "Scene");
+    } else {
+      app.add_option("SCENE", positional_, "Scene file; default: scene/pinned2.json of the project")->group("Scene");
+    }
+    app.add_option("-f", flag_, "The same, as in the course")->type_name("FILE")->group("Scene");
+    app.add_option("-r", options_.root,
+                   "The project's folder, which holds shaders/ and scene/; default: searched for, from . to ../../..")
+        ->type_name("DIR")
+        ->group("Scene");
+    Add(app, "--set",
+        "Sets a parameter, such as --set cloth.ks=500 or --set cloth.1.ks=500; may be repeated, the later wins",
+        options_.set, "Scene")
+        ->type_name("PATH=VALUE");
+    app.add_flag("--print-config", options_.printConfig,
+                 "Prints every parameter, its value and where that comes from, and ends")
+        ->group("Scene");
+    Call(app, "--threads", "Threads; default: as many as there are cores. The result does not depend on it", "N",
+         "Scene", [this](const std::string& text) { options_.threads = Whole("--threads", text, 1, kMostThreads); });
+  }
+
+  void Sphere(CLI::App& app, const char* outputHelp) {
+    Call(app, "-a", "Latitudes of drawn spheres, as in the course; default 40", "N", "Picture",
+         [this](const std::string& text) { options_.latitudes = Whole("-a", text, 2, kFinestSphere); });
+    const std::string help = "A whole number: longitudes of drawn spheres, as in the course; default 40" +
+                             (outputHelp ? std::string(". Anything else: ") + outputHelp : std::string());
+    const bool writes = outputHelp != nullptr;
+    app.add_option_function<std::vector<std::string>>(
+           "-o",
+           [this, writes](const std::vector<std::string>& values) {
+             for (const std::string& value : values) {
+               if (LooksWhole(value) || !writes)
+                 options_.longitudes = Whole("-o", value, 3, kFinestSphere);
+               else if (value.empty())
+                 Refuse("-o", "a whole number or the name of a file", value);
+               else
+                 options_.output = value;
+             }
+           },
+           help)
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name(writes ? "N|FILE" : "N")
+        ->group(writes ? "Output" : "Picture");
+  }
+
+  void Length(CLI::App& app, const char* defaultHelp) {
+    Call(app, "--frames", std::string("Runs so many frames; ") + defaultHelp, "N", "Length",
+         [this](const std::string& text) { options_.frames = Whole("--frames", text, 0, kMostFrames); });
+    Seconds(app, "Runs so long, in simulated seconds, rounded up to a whole frame");
+    Rest(app);
+  }
+
+  void OneFrame(CLI::App& app) {
+    Call(app, "--frame", "Which frame to show; default 0, the start", "N", "Length",
+         [this](const std::string& text) { options_.frame = Whole("--frame", text, 0, kMostFrames); });
+    Seconds(app, "The same by simulated time in seconds, rounded up to a whole frame");
+    Rest(app);
+  }
+
+  void Progress(CLI::App& app) {
+    Call(app, "--progress", "On stderr: bar, json (one object per line), or none; default: a bar on a terminal", "KIND",
+         "Output", [this](const std::string& text) {
+           if (text == "bar")
+             options_.progress = ProgressKind::Bar;
+           else if (text == "json")
+             options_.progress = ProgressKind::Json;
+           else if (text == "none")
+             options_.progress = ProgressKind::None;
+           else
+             Refuse("--progress", "bar, json or none", text);
+         });
+  }
+
+  void Picture(CLI::App& app) {
+    app.add_option("--shader", options_.shader, "Name of a file shaders/NAME.frag; default: the scene's")
+        ->type_name("NAME")
+        ->group("Picture");
+    app.add_option_function<std::vector<std::string>>(
+           "--uniform", [this](const std::vector<std::string>& values) { Uniforms(values); },
+           "Sets a parameter of the shader, such as --uniform shininess=64 or --uniform upper=1,0,0; may be repeated")
+        ->take_all()
+        ->allow_extra_args(false)
+        ->type_name("NAME=VALUE")
+        ->group("Picture");
+    Call(app, "--camera", "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,DISTANCE, in degrees and metres: --camera 30,20,2.5",
+         "A,E[,D]", "Picture", [this](const std::string& text) { Camera(text); });
+    Call(app, "--target", "The point looked at, in metres: --target 0.5,0.5,0.5", "X,Y,Z", "Picture",
+         [this](const std::string& text) {
+           std::vector<double> numbers;
+           for (const std::string& part : Split(text, ','))
+             numbers.push_back(Number("--target", part, -1e6, 1e6, "three numbers X,Y,Z"));
+           if (numbers.size() != 3) Refuse("--target", "three numbers X,Y,Z", text);
+           options_.target = numbers;
+         });
+    Call(app, "--size", "Width and height in pixels; default 1024x800", "WxH", "Picture",
+         [this](const std::string& text) {
+           const std::vector<std::string> parts = Split(text, 'x');
+           if (parts.size() != 2) Refuse("--size", "WIDTHxHEIGHT such as 1024x800", text);
+           options_.width = Whole("--size", parts[0], 1, kLargestPicture);
+           options_.height = Whole("--size", parts[1], 1, kLargestPicture);
+         });
+    Call(app, "--samples", "Samples per pixel, which smooth edges: 1, 2, 4, 8 or 16; default 4", "N", "Picture",
+         [this](const std::string& text) {
+           const auto number = AnyNumber(text);
+           if (!number || (*number != 1 && *number != 2 && *number != 4 && *number != 8 && *number != 16)) {
+             Refuse("--samples", "1, 2, 4, 8 or 16", text);
+           }
+           options_.samples = static_cast<int>(*number);
+         });
+  }
+
+  template <class Function>
+  CLI::Option* Call(CLI::App& app, const std::string& name, const std::string& help, const char* type,
+                    const char* group, Function function) {
+    return app.add_option_function<std::string>(name, function, help)->type_name(type)->group(group);
+  }
+
+  Options& options() { return options_; }
+
+ private:
+  CLI::Option* Add(CLI::App& app, const std::string& name, const std::string& help, std::vector<std::string>& values,
+                   const char* group) {
+    CLI::Option* option = app.add_option(name, values, help)->take_all()->group(group);
+    if (name[0] == '-') option->allow_extra_args(false);
+    return option;
+  }
+
+  void Seconds(CLI::App& app, const char* help) {
+    Call(app, "--seconds", help, "S", "Length", [this](const std::string& text) {
+      options_.seconds = Number("--seconds", text, 0, kLongestTime, "a number of seconds 0..1e6");
+    });
+  }
+
+  void Rest(CLI::App& app) {
+    app.add_flag("--until-rest", options_.untilRest,
+                 "Runs until no point has moved more than 1 mm in a frame for 30 frames on end")
+        ->group("Length");
+    Call(app, "--limit", "The most that --until-rest runs, in simulated seconds; default 60", "S", "Length",
+         [this](const std::string& text) {
+           options_.limit = Number("--limit", text, 1e-9, kLongestTime, "a number of seconds above 0, at most 1e6");
+         });
+  }
+
+  void Camera(const std::string& text) {
+    const char* const expected =
+        "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,DISTANCE with an elevation -89..89 and a distance > 0";
+    const std::vector<std::string> parts = Split(text, ',');
+    if (parts.size() != 2 && parts.size() != 3) Refuse("--camera", expected, text);
+    options_.azimuth = Number("--camera", parts[0], -1e6, 1e6, expected);
+    options_.elevation = Number("--camera", parts[1], -89, 89, expected);
+    if (parts.size() == 3) options_.distance = Number("--camera", parts[2], 1e-6, 1e6, expected);
+  }
+
+  void Uniforms(const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      const char* const expected = "NAME=NUMBER or NAME=R,G,B";
+      const std::size_t equals = value.find('=');
+      if (equals == std::string::npos || equals == 0) Refuse("--uniform", expected, value);
+      UniformOption uniform;
+      uniform.name = value.substr(0, equals);
+      const std::string numbers = value.substr(equals + 1);
+      if (numbers == "true" || numbers == "false") {
+        uniform.numbers.push_back(numbers == "true" ? 1.0f : 0.0f);
+      } else {
+        for (const std::string& part : Split(numbers, ',')) {
+          uniform.numbers.push_back(static_cast<float>(Number("--uniform", part, -1e30, 1e30, expected)));
+        }
+      }
+      if (uniform.numbers.size() != 1 && uniform.numbers.size() != 3) Refuse("--uniform", expected, value);
+      options_.uniforms.push_back(std::move(uniform));
+    }
+  }
+
+  Options& options_;
+  std::string& positional_;
+  std::string& flag_;
+};
+
+void AddVerbs(CLI::App& app, Builder& builder) {
+  const auto verb = [&](Verb v, const char* summary, const char* examples) -> CLI::App& {
+    CLI::App* sub = app.add_subcommand(std::string(VerbName(v)), summary);
+    sub->footer(std::string("Examples:\n") + examples + "\n" + kExitCodes);
+    sub->callback([&builder, v] { builder.options().verb = v; });
+    return *sub;
+  };
+
+  CLI::App& view = verb(Verb::View, "Opens the interactive viewer",
+                        "  percale view scene/sphere.json\n"
+                        "  percale scene/sphere.json            the same\n"
+                        "  percale -f scene/sphere.json -a 128 -o 128\n");
+  builder.Scene(view, false);
+  builder.Sphere(view, nullptr);
+  builder.Picture(view);
+
+  CLI::App& simulate =
+      verb(Verb::Simulate, "Runs a scene without drawing, prints a summary, writes caches",
+           "  percale simulate scene/pinned2.json --frames 300 --every 100 -o p.csv\n"
+           "  percale simulate scene/sphere.json --until-rest -o sphere.obj\n"
+           "  percale simulate scene/pinned4.json --seconds 5 -o film.pc2\n"
+           "  percale simulate scene/pinned2.json --set cloth.ks=500 --progress json\n"
+           "Which frames are written: with --every K frame 0 (the start), each K-th and the last; without it\n"
+           "the last one, but all from 0 on for .pc2. A .pc2 has evenly spaced frames only, so that with\n"
+           "--every the last one is left out where it does not fall on a K-th; its mesh is beside it as\n"
+           "FILE.obj. Several .obj or .ply are numbered by frame: name_0100.obj.\n"
+           "Of --frames (or --seconds) and --until-rest, what comes first ends the run.\n");
+  builder.Scene(simulate, false);
+  builder.Length(simulate, "default 300");
+  builder.Sphere(simulate, "the cache to write, by its ending: .csv, .obj, .ply or .pc2");
+  builder.Call(
+      simulate, "--every", "Writes each N-th frame, see below", "N", "Output",
+      [&builder](const std::string& text) { builder.options().every = Whole("--every", text, 1, kMostFrames); });
+  builder.Progress(simulate);
+
+  CLI::App& shot = verb(Verb::Shot, "Makes one picture (PNG)",
+                        "  percale shot scene/sphere.json --until-rest --shader Phong -o a.png\n"
+                        "  percale shot scene/pinned2.json --frame 120 --camera 30,20,2.5 --size 1920x1080 -o b.png\n"
+                        "  percale shot scene/sphere.json --frame 90 --shader Bump -a 128 -o 128 -o c.png\n");
+  builder.Scene(shot, false);
+  builder.OneFrame(shot);
+  builder.Picture(shot);
+  builder.Sphere(shot, "the picture to write; default: the scene's name with .png, in the current folder");
+  builder.Progress(shot);
+
+  CLI::App& render =
+      verb(Verb::Render, "Makes a video (mp4), or numbered pictures",
+           "  percale render scene/sphere.json --seconds 4 --shader Phong -o sphere.mp4\n"
+           "  percale render scene/pinned2.json --frames 300 --fps 90 -o slow.mp4     a third of real time\n"
+           "  percale render scene/plane.json -o pictures/                            numbered pictures\n"
+           "The video plays in real time at --fps up to the scene's frames per second: at 90 and 30 it shows\n"
+           "each third frame. Above the scene's rate it shows all frames, slowed down.\n");
+  builder.Scene(render, false);
+  builder.Length(render, "default 300");
+  builder.Picture(render);
+  builder.Sphere(render,
+                 "NAME.mp4, or a new folder for pictures; default: the scene's name with .mp4, in the current folder");
+  builder.Call(render, "--fps", "Pictures per second of video; default 30", "N", "Output",
+               [&builder](const std::string& text) {
+                 builder.options().framesPerSecond = Number("--fps", text, 0.1, 1000, "a number 0.1..1000");
+               });
+  builder.Progress(render);
+
+  CLI::App& check = verb(Verb::Check, "Reports every problem of scene files",
+                         "  percale check scene/*.json\n"
+                         "  percale check --schema > percale.schema.json      for editors\n");
+  builder.Scene(check, true);
+  check.add_flag("--schema", builder.options().schema, "Prints the JSON schema of scene files, and ends");
+
+  CLI::App& info = verb(Verb::Info, "Tells what scenes or caches hold",
+                        "  percale info scene/pinned2.json\n"
+                        "  percale info film.pc2 p.csv mesh.obj\n");
+  builder.Scene(info, true);
+
+  CLI::App& doctor = verb(Verb::Doctor, "Tells what this machine offers, and what is missing", "  percale doctor\n");
+  doctor.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR");
+
+  CLI::App& bench = verb(Verb::Bench, "Measures speed against the textbook program",
+                         "  percale bench springs\n"
+                         "  percale bench springs --sizes 50 --threads 2\n"
+                         "  percale bench springs --json > speed.json\n");
+  bench.add_option("NAME", builder.options().benchmark, "Which: springs (default)");
+  bench.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR");
+  builder.Call(
+      bench, "--threads", "Threads of the many-threaded runs; default: as many as there are cores", "N", "Options",
+      [&builder](const std::string& text) { builder.options().threads = Whole("--threads", text, 1, kMostThreads); });
+  builder.Call(bench, "--sizes", "Points along a side of the sheet; default 50,100,200", "N,N,...", "Options",
+               [&builder](const std::string& text) {
+                 for (const std::string& part : Split(text, ','))
+                   builder.options().sizes.push_back(Whole("--sizes", part, 3, 2000));
+               });
+  builder.Call(bench, "--frames", "Frames per timed round; default: fewer for larger sheets", "N", "Options",
+               [&builder](const std::string& text) { builder.options().frames = Whole("--frames", text, 1, 100000); });
+  bench.add_flag("--json", builder.options().json, "One JSON object instead of tables")->group("Options");
+
+  verb(Verb::Version, "Prints the version", "  percale version\n");
+}
+
+void CollectNames(const CLI::App& app, std::vector<std::string>& names) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+}
+
+std::string UnknownArgument(const CLI::App& app, const std::string& argument) {
+  if (argument.empty() || argument[0] != '-') {
+    return "unexpected argument " + Quote(argument, 60) + "; a file name with spaces needs quotes";
+  }
+  std::vector<std::string> names;
+  CollectNames(app, names);
+  for (const CLI::App* sub : app.get_subcommands()) CollectNames(*sub, names);
+  const std::string name = argument.substr(0, argument.find('='));
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return "unknown option " + name + DidYouMean(name, views);
+}
+
+int UsageError(const std::string& message, const std::string& verb) {
+  std::fprintf(stderr, "percale: error: %s\nTry: percale %s%s--help\n", message.c_str(), verb.c_str(),
+               verb.empty() ? "" : " ");
+  return kUsage;
+}
+
+/// What is wrong between options, or nothing.
+std::string Conflict(const Options& o) {
+  if (o.frames && o.seconds) return "--frames and --seconds both say how long to run; give one";
+  if (o.frame && (o.seconds || o.untilRest)) return "--frame, --seconds and --until-rest each name a moment; give one";
+  if (o.verb == Verb::Shot && o.seconds && o.untilRest)
+    return "--seconds and --until-rest each name a moment; give one";
+  if (o.every && o.output.empty()) return "--every says which frames go into a file; name it with -o FILE";
+  return {};
+}
+
+}  // namespace
+
+std::string_view VerbName(Verb verb) {
+  return kVerbs[static_cast<std::size_t>(verb)];
+}
+
+std::variant<Options, int> ParseCommandLine(const std::vector<std::string>& arguments) {
+  std::vector<std::string> rest = arguments;
+  if (!rest.empty() && rest[0] == "help") {  // percale help [VERB]
+    rest.erase(rest.begin());
+    rest.insert(rest.begin() + (rest.empty() ? 0 : 1), "--help");
+  }
+
+  Options options;
+  std::string positional, flag;
+  CLI::App app("Percale, a cloth simulator. Without a verb: the viewer; percale SCENE = percale view SCENE.",
+               "percale");
+  app.option_defaults()->take_last();
+  app.set_help_flag("-h,--help", "Prints this, or with a verb what it takes, and ends");
+  bool version = false;
+  app.add_flag("--version", version, "Prints the version, and ends");
+  app.get_formatter()->column_width(28);
+  app.get_formatter()->label("SUBCOMMAND", "VERB");
+  app.get_formatter()->label("Subcommands", "Verbs");
+  app.require_subcommand(0, 1);
+  app.footer(std::string("\npercale VERB --help tells what a verb takes, with examples.\n") + kExitCodes);
+
+  Builder builder(options, positional, flag);
+  builder.Scene(app, false);
+  builder.Sphere(app, nullptr);
+  builder.Picture(app);
+  AddVerbs(app, builder);
+
+  std::string verb;
+  try {
+    std::vector<std::string> reversed(rest.rbegin(), rest.rend());
+    app.parse(std::move(reversed));
+  } catch (const CLI::CallForHelp&) {
+    const std::string help = app.help();
+    std::fwrite(help.data(), 1, help.size(), stdout);
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    const auto subs = app.get_subcommands();
+    if (!subs.empty()) verb = subs[0]->get_name();
+    const std::vector<std::string> extras = app.remaining(true);
+    if (!positional.empty() && subs.empty() && !extras.empty() && !Nearest(positional, kVerbs).empty()) {
+      return UsageError("there is no verb " + Quote(positional, 60) + DidYouMean(positional, kVerbs), {});
+    }
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extras.empty())
+      return UsageError(UnknownArgument(app, extras[0]), verb);
+    return UsageError(error.what(), verb);
+  }
+
+  if (version) options.verb = Verb::Version;
+  const bool verbGiven = !app.get_subcommands().empty();
+  if (verbGiven) verb = VerbName(options.verb);
+  if (!flag.empty() && !positional.empty() && flag != positional) {
+    return UsageError("two scenes are given, " + Quote(positional, 60) + " and -f " + Quote(flag, 60) + "; give one",
+                      verb);
+  }
+  options.scene = flag.empty() ? positional : flag;
+  options.bare = !verbGiven && options.scene.empty() && !version;
+  if (options.verb == Verb::Check || options.verb == Verb::Info) {
+    if (!options.scene.empty()) options.files.push_back(options.scene);
+  }
+  // A word that is neither a verb nor a file.
+  if (!verbGiven && !options.scene.empty() && flag.empty() &&
+      options.scene.find_first_of("./\\") == std::string::npos) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(TextPath(options.scene), ignored)) {
+      std::string list;
+      for (const std::string_view known : kVerbs) list += (list.empty() ? "" : ", ") + std::string(known);
+      return UsageError("there is no verb and no scene file " + Quote(options.scene, 60) +
+                            DidYouMean(options.scene, kVerbs) + "; the verbs are " + list,
+                        {});
+    }
+  }
+  if (const std::string conflict = Conflict(options); !conflict.empty()) return UsageError(conflict, verb);
+  return options;
+}
+
+}  // namespace percale::cli

@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "apps/cli/session.h"
+#include "apps/cli/verbs.h"
+#include "core/text.h"
+#include "io/atomic_file.h"
+#include "io/cache_kind.h"
+#include "percale/mesh_file.h"
+#include "world/limits.h"
+
+namespace percale::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a point takes in a running World, its springs included; measured, rounded up.
+constexpr double kBytesPerPoint = 600;
+
+std::string Short(double number) {
+  return std::isinf(number) ? "unlimited" : Text("%.4g", number);
+}
+
+void PrintCloth(const ClothSettings& cloth, std::size_t index, double timeStep) {
+  const auto w = std::int64_t(cloth.numWidthPoints), h = std::int64_t(cloth.numHeightPoints);
+  const std::int64_t structural = (w - 1) * h + w * (h - 1), shearing = 2 * (w - 1) * (h - 1);
+  const std::int64_t bending = std::max<std::int64_t>(w - 2, 0) * h + w * std::max<std::int64_t>(h - 2, 0);
+  const std::int64_t enabled = (cloth.enableStructural ? structural : 0) + (cloth.enableShearing ? shearing : 0) +
+                               (cloth.enableBending ? bending : 0);
+  std::set<std::int64_t> pins;
+  for (const GridPoint& p : cloth.pinned) pins.insert(p.j * w + p.i);
+
+  std::printf("cloth %zu\n", index);
+  std::printf("  size             %s x %s m, %s\n", Short(cloth.width).c_str(), Short(cloth.height).c_str(),
+              cloth.orientation == Orientation::Horizontal ? "horizontal" : "vertical");
+  std::printf("  points           %lld (%lld x %lld), %zu pinned\n", static_cast<long long>(w * h),
+              static_cast<long long>(w), static_cast<long long>(h), pins.size());
+  std::printf("  spacing          %s x %s m\n", Short(cloth.width / double(w - 1)).c_str(),
+              Short(cloth.height / double(h - 1)).c_str());
+  std::printf("  triangles        %lld\n", static_cast<long long>(2 * (w - 1) * (h - 1)));
+  std::printf("  springs          %lld structural, %lld shearing, %lld bending; %lld enabled\n",
+              static_cast<long long>(structural), static_cast<long long>(shearing), static_cast<long long>(bending),
+              static_cast<long long>(enabled));
+  std::printf("  mass             %s kg, %s kg per point\n", Short(PointMass(cloth) * double(w * h)).c_str(),
+              Short(PointMass(cloth)).c_str());
+  std::printf("  ks               %s N/m; stable below %s N/m\n", Short(cloth.ks).c_str(),
+              Short(LargestStableKs(cloth, timeStep)).c_str());
+  std::printf("  thickness        %s m; sensible up to %s m\n", Short(cloth.thickness).c_str(),
+              Short(LargestSensibleThickness(cloth)).c_str());
+  std::printf("  damping          %s %% per step\n", Short(cloth.damping).c_str());
+}
+
+void PrintScene(const Session& session) {
+  const Scene& scene = session.scene;
+  double points = 0;
+  for (const ClothSettings& cloth : scene.cloths) points += double(cloth.numWidthPoints) * cloth.numHeightPoints;
+  std::printf("%s: scene\n", PathText(session.file).c_str());
+  std::printf("time step          1/%lld s (%d frames per second, %d steps each)\n",
+              static_cast<long long>(scene.simulation.framesPerSecond) * scene.simulation.stepsPerFrame,
+              scene.simulation.framesPerSecond, scene.simulation.stepsPerFrame);
+  for (std::size_t i = 0; i < scene.cloths.size(); ++i) PrintCloth(scene.cloths[i], i, scene.TimeStep());
+  std::printf("colliders          %zu spheres, %zu planes\n", scene.spheres.size(), scene.planes.size());
+  std::printf("pin motions        %zu\n", scene.pinMotions.size());
+  std::printf("wind               %s\n", scene.wind.drag > 0 ? "yes" : "no");
+  std::printf("points in all      %.0f\n", points);
+  std::printf("memory             about %s\n", Megabytes(points * kBytesPerPoint).c_str());
+}
+
+int PrintCache(const fs::path& file) {
+  const auto info = ReadCacheInfo(file);
+  if (!info) {
+    PrintDiagnostics(info.diagnostics());
+    return kInvalid;
+  }
+  std::error_code code;
+  const auto size = fs::file_size(file, code);
+  std::printf("%s: %s\n", PathText(file).c_str(), info->format.c_str());
+  std::printf("frames             %d\n", info->frames);
+  if (info->frameSeconds > 0) std::printf("time per frame     %.6g s\n", info->frameSeconds);
+  std::printf("vertices           %d\n", info->vertices);
+  if (info->triangles > 0) std::printf("triangles          %d\n", info->triangles);
+  std::printf("box                (%.6g, %.6g, %.6g) .. (%.6g, %.6g, %.6g) m\n", info->boxMin.x, info->boxMin.y,
+              info->boxMin.z, info->boxMax.x, info->boxMax.y, info->boxMax.z);
+  std::printf("size               %s\n", Megabytes(code ? 0 : double(size)).c_str());
+  return kDone;
+}
+
+}  // namespace
+
+int Info(const Options& options) {
+  std::vector<std::string> files = options.files;
+  if (files.empty()) files.emplace_back();  // the default scene
+  int worst = kDone;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (i > 0) std::printf("\n");
+    int code = kDone;
+    if (!files[i].empty() && CacheKindOf(TextPath(files[i]))) {
+      code = PrintCache(TextPath(files[i]));
+    } else {
+      Options one = options;
+      one.scene = files[i];
+      const auto opened = OpenSession(one);
+      if (const int* failure = std::get_if<int>(&opened))
+        code = *failure;
+      else
+        PrintScene(std::get<Session>(opened));
+    }
+    if (code != kDone) worst = code;
+  }
+  return worst;
+}
+
+}  // namespace percale::cli

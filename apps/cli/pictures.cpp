@@ -1,0 +1,182 @@
+#include "apps/cli/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/cli/run.h"
+#include "core/text.h"
+#include "io/atomic_file.h"
+#include "percale/scene_file.h"
+#include "render/video.h"
+
+namespace percale::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Compression of single pictures: nearly as small as 9, much faster.
+constexpr int kPngLevel = 6;
+
+/// Checks the uniforms of the command line against the shader's parameters, and enters them.
+int ApplyUniforms(const Options& options, std::span<const ShaderParameter> parameters, View& view) {
+  std::vector<std::string_view> names;
+  for (const ShaderParameter& parameter : parameters) names.push_back(parameter.name);
+  for (const UniformOption& uniform : options.uniforms) {
+    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const ShaderParameter& p) {
+      return p.name == uniform.name || p.name == "u_" + uniform.name;
+    });
+    if (found == parameters.end()) {
+      std::string list;
+      for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+      std::string near = DidYouMean(uniform.name, names);
+      if (near.empty()) near = DidYouMean("u_" + uniform.name, names);
+      PrintError("--uniform: the shader " + view.look.shader + " has no parameter " + Quote(uniform.name, 60) + near +
+                 (list.empty() ? "; it has none" : "; it has " + list));
+      return kUsage;
+    }
+    const bool vector = found->type == ShaderParameter::Type::Vector;
+    if (uniform.numbers.size() != (vector ? 3u : 1u)) {
+      PrintError("--uniform: " + found->name + " takes " + (vector ? "three numbers R,G,B" : "one number") + ", got " +
+                 std::to_string(uniform.numbers.size()));
+      return kUsage;
+    }
+    for (const float number : uniform.numbers) {
+      if (number < found->min || number > found->max) {
+        PrintError("--uniform: " + found->name + ": expected a number " + FormatNumber(double(found->min)) + ".." +
+                   FormatNumber(double(found->max)) + ", got " + FormatNumber(double(number)));
+        return kUsage;
+      }
+    }
+    UniformValue value{};
+    std::copy(uniform.numbers.begin(), uniform.numbers.end(), value.begin());
+    view.uniforms[found->name] = value;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+View MakeView(const Options& options, const Scene& scene) {
+  Scene seen = scene;
+  if (options.azimuth || options.target) {
+    CameraSettings camera = OrbitCamera::ForScene(scene).Settings();
+    camera.automatic = false;
+    if (options.azimuth) camera.azimuth = *options.azimuth;
+    if (options.elevation) camera.elevation = *options.elevation;
+    if (options.distance) camera.distance = *options.distance;
+    if (options.target) camera.target = {(*options.target)[0], (*options.target)[1], (*options.target)[2]};
+    seen.camera = camera;
+  }
+  View view = View::ForScene(seen);
+  view.sphereLatitudes = options.latitudes;
+  view.sphereLongitudes = options.longitudes;
+  return view;
+}
+
+std::variant<Studio, int> OpenStudio(const Options& options, const Session& session) {
+  const auto root = FindRoot(options.root);
+  if (!root) {
+    PrintDiagnostics(root.diagnostics());
+    return kFailed;
+  }
+  View view = MakeView(options, session.scene);
+  const std::vector<std::string> shaders = ListShaders(*root / "shaders");
+  if (std::find(shaders.begin(), shaders.end(), view.look.shader) == shaders.end()) {
+    const std::vector<std::string_view> names(shaders.begin(), shaders.end());
+    std::string list;
+    for (const std::string& name : shaders) list += (list.empty() ? "" : ", ") + name;
+    PrintError((options.shader.empty() ? PathText(session.file) + ": /look/shader" : std::string("--shader")) +
+               ": there is no shader " + Quote(view.look.shader, 60) + DidYouMean(view.look.shader, names) +
+               "; the shaders are " + list);
+    return options.shader.empty() ? kInvalid : kUsage;
+  }
+  bool noGraphics = false;
+  auto painter = Painter::Open(
+      {.root = *root, .width = options.width, .height = options.height, .samples = options.samples}, &noGraphics);
+  if (!painter) {
+    PrintDiagnostics(painter.diagnostics());
+    return noGraphics ? kNoGraphics : kFailed;
+  }
+  PrintDiagnostics(painter.diagnostics());
+  if (const int code = ApplyUniforms(options, painter->shaders().Parameters(view.look.shader), view); code != kDone)
+    return code;
+  return Studio{std::move(*painter), std::move(view)};
+}
+
+std::optional<Image> Paint(Studio& studio, const World& world) {
+  auto image = studio.painter.Paint(world, studio.view);
+  PrintDiagnostics(image.diagnostics());
+  if (!image) return std::nullopt;
+  return std::move(*image);
+}
+
+int WritePicture(Studio& studio, const World& world, const fs::path& file) {
+  const auto image = Paint(studio, world);
+  if (!image) return kInvalid;
+  Scene seen = world.scene();
+  seen.camera = studio.view.camera.Settings();
+  seen.look = studio.view.look;
+  PngOptions png;
+  png.level = kPngLevel;
+  png.text = {{"Software", std::string("Percale ") + PERCALE_VERSION},
+              {"percale:scene", FormatScene(seen)},
+              {"percale:frame", std::to_string(world.report().frame)}};
+  if (Status status = WritePng(file, *image, png); !status) {
+    PrintDiagnostics(status.diagnostics());
+    return kFailed;
+  }
+  return kDone;
+}
+
+fs::path DefaultOutput(const Session& session, const char* extension) {
+  fs::path name = session.file.stem();
+  name += extension;
+  return name;
+}
+
+int CheckWritable(const fs::path& file) {
+  const auto probe = AtomicFile::Create(file);
+  if (probe) return kDone;
+  PrintDiagnostics(probe.diagnostics());
+  return kFailed;
+}
+
+int Film(Studio& studio, World& world, const Options& options, const Session& session, const fs::path& file,
+         int defaultFrames) {
+  VideoSettings settings;
+  settings.width = options.width;
+  settings.height = options.height;
+  settings.framesPerSecond = options.framesPerSecond;
+  auto video = VideoWriter::Open(file, settings);
+  PrintDiagnostics(video.diagnostics());
+  if (!video) return kFailed;
+
+  // Picture k shows the frame nearest to its time, so that the film plays in real time.
+  const double framesPerPicture = world.scene().simulation.framesPerSecond / options.framesPerSecond;
+  double pictures = 0;
+  int code = kDone;
+  const RunEnd end = Run(world, PlanRun(options, world.scene(), defaultFrames), options, session, [&] {
+    std::optional<Image> image;
+    while (std::floor(pictures * framesPerPicture + 0.5) <= world.report().frame) {
+      if (!image) image = Paint(studio, world);
+      if (!image) return code = kInvalid;
+      if (Status status = video->Add(*image); !status) {
+        PrintDiagnostics(status.diagnostics());
+        return code = kFailed;
+      }
+      ++pictures;
+    }
+    return int(kDone);
+  });
+  if (end == RunEnd::Failed) return code;
+  const auto summary = video->Finish();
+  PrintDiagnostics(summary.diagnostics());
+  if (!summary) return kFailed;
+  std::printf("%s: %d pictures, %.3g s at %.4g per second%s\n", PathText(summary->path).c_str(), summary->frames,
+              summary->frames / options.framesPerSecond, options.framesPerSecond,
+              summary->isFolder ? ", numbered PNG files in a folder" : "");
+  return CodeOf(end);
+}
+
+}  // namespace percale::cli

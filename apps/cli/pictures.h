@@ -1,0 +1,48 @@
+#pragma once
+/// \file
+/// What shot, render and the run without a display share: a painter and the view that the command
+/// line asks for.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "apps/cli/options.h"
+#include "apps/cli/session.h"
+#include "percale/world.h"
+#include "render/picture.h"
+
+namespace percale::cli {
+
+/// The view of the scene with the command line's choices. Fails on a camera that cannot be.
+View MakeView(const Options& options, const Scene& scene);
+
+/// A painter and its view.
+struct Studio {
+  Painter painter;
+  View view;
+};
+
+/// Opens the studio, and checks the names of shader and uniforms. On failure prints what is wrong
+/// and returns the exit code: 5 without graphics.
+std::variant<Studio, int> OpenStudio(const Options& options, const Session& session);
+
+/// Draws the World as it stands; prints warnings and errors. Nothing when it failed (kInvalid: the
+/// shader is at fault).
+std::optional<Image> Paint(Studio& studio, const World& world);
+
+/// Paints the World and writes a PNG file that holds scene, camera and frame as texts. Returns the
+/// exit code.
+int WritePicture(Studio& studio, const World& world, const std::filesystem::path& file);
+
+/// NAME.EXTENSION for a scene file NAME.json, in the current folder.
+std::filesystem::path DefaultOutput(const Session& session, const char* extension);
+
+/// Fails early where a file could not be written, before minutes of simulation. Returns the exit code.
+int CheckWritable(const std::filesystem::path& file);
+
+/// Runs the World by `plan` into a video. Returns the exit code; `path` is where the film is.
+int Film(Studio& studio, World& world, const Options& options, const Session& session,
+         const std::filesystem::path& file, int defaultFrames);
+
+}  // namespace percale::cli

@@ -1,0 +1,38 @@
+#pragma once
+/// \file
+/// Progress on stderr: a bar for people, lines of JSON for programs.
+
+#include <chrono>
+#include <string>
+
+#include "apps/cli/options.h"
+#include "percale/world.h"
+
+namespace percale::cli {
+
+class Progress {
+ public:
+  /// `frames` is the most that will run. `what` stands before the bar: "simulate".
+  Progress(ProgressKind kind, std::string what, int frames);
+  ~Progress();  ///< Clears the bar.
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// A frame is done. Shown at most ten times a second, and at the last.
+  void Update(const StepReport& report);
+  /// The last frame is done, however it came to be the last.
+  void Finish(const StepReport& report);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void ShowBar(const StepReport& report);
+  void ShowJson(const StepReport& report, bool last);
+
+  ProgressKind kind_;
+  std::string what_;
+  int frames_;
+  Clock::time_point start_, shown_;
+  bool drawn_ = false;
+};
+
+}  // namespace percale::cli

@@ -1,0 +1,207 @@
+#include "apps/cli/session.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <system_error>
+#include <vector>
+
+#include "apps/cli/platform.h"
+#include "core/text.h"
+#include "io/atomic_file.h"
+#include "percale/parameters.h"
+
+namespace percale::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDefaultScene = "scene/pinned2.json";
+
+bool IsRoot(const fs::path& folder) {
+  std::error_code code;
+  return fs::is_directory(folder / "shaders", code) && fs::is_directory(folder / "scene", code);
+}
+
+/// The key of a parameter as --set takes it: "cloth.ks", or "cloth.1.ks" where there are several.
+std::string SetPath(const Parameter& parameter, const ParameterGroup& group, std::size_t index, std::size_t count) {
+  std::string path(parameter.group);
+  if (group.isArray && count > 1) path += "." + std::to_string(index);
+  return path + "." + std::string(parameter.name);
+}
+
+}  // namespace
+
+void PrintError(const std::string& message) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "percale: error: %s\n", message.c_str());
+}
+
+void PrintDiagnostics(const Diagnostics& diagnostics) {
+  std::fflush(stdout);
+  for (const Diagnostic& diagnostic : diagnostics) {
+    const std::string text = (diagnostic.place.file.empty() ? "percale: " : "") + Format(diagnostic);
+    std::fwrite(text.data(), 1, text.size(), stderr);
+  }
+}
+
+Result<fs::path> FindRoot(const std::string& asked) {
+  if (!asked.empty()) {
+    if (IsRoot(TextPath(asked))) return TextPath(asked);
+    return MakeError("-r: expected the project's folder, which holds shaders/ and scene/, got " + Quote(asked, 200));
+  }
+  std::vector<fs::path> candidates = {".", "..", "../..", "../../.."};
+  if (const fs::path program = ExecutablePath(); !program.empty()) {
+    const fs::path folder = program.parent_path();
+    candidates.push_back(folder / ".." / "share" / "percale");
+    fs::path above = folder;
+    for (int i = 0; i < 4; ++i) {  // build/release/bin, and deeper
+      candidates.push_back(above);
+      above = above.parent_path();
+    }
+  }
+  for (const fs::path& candidate : candidates) {
+    if (IsRoot(candidate)) {
+      std::error_code code;
+      const fs::path whole = fs::weakly_canonical(candidate, code);
+      return code || !candidate.is_absolute() ? candidate : whole;
+    }
+  }
+  return MakeError(
+      "the project's folder, which holds shaders/ and scene/, was not found from here; name it with -r DIR");
+}
+
+Result<fs::path> ResolveScene(const Options& options, const std::string& name) {
+  std::error_code code;
+  if (!name.empty()) {
+    const fs::path file = TextPath(name);
+    if (fs::exists(file, code) || file.is_absolute()) return file;
+    if (const auto root = FindRoot(options.root); root && fs::exists(*root / file, code)) return *root / file;
+    return file;  // loading it tells what is wrong
+  }
+  const auto root = FindRoot(options.root);
+  if (!root) return root.diagnostics();
+  if (*root == ".") return fs::path(kDefaultScene);
+  return *root / kDefaultScene;
+}
+
+std::variant<Session, int> OpenSession(const Options& options) {
+  if (!options.root.empty()) {  // a wrong -r is told even where the folder is not needed
+    if (const auto root = FindRoot(options.root); !root) {
+      PrintDiagnostics(root.diagnostics());
+      return kUsage;
+    }
+  }
+  const auto file = ResolveScene(options, options.scene);
+  if (!file) {
+    PrintDiagnostics(file.diagnostics());
+    return kFailed;
+  }
+  Session session;
+  session.file = *file;
+  auto scene = LoadScene(*file, &session.origins);
+  if (!scene) {
+    PrintDiagnostics(scene.diagnostics());
+    return kInvalid;
+  }
+  session.scene = std::move(*scene);
+  Diagnostics warnings = scene.diagnostics();
+
+  for (const std::string& assignment : options.set) {
+    const auto paths = ApplyAssignment(session.scene, assignment);
+    if (!paths) {
+      Diagnostics errors = paths.diagnostics();
+      for (Diagnostic& error : errors) error.message = "--set " + error.message;
+      PrintDiagnostics(errors);
+      return kUsage;
+    }
+    for (const std::string& path : *paths) session.assignments[path] = assignment;
+  }
+  if (!options.shader.empty()) session.scene.look.shader = options.shader;
+  if (!options.set.empty()) {
+    // What the file's warnings said may no longer hold.
+    warnings = CheckScene(session.scene);
+    for (Diagnostic& warning : warnings) {
+      if (warning.place.file.empty()) warning.place.file = PathText(session.file) + " with --set";
+    }
+  }
+  PrintDiagnostics(warnings);
+  if (HasErrors(warnings)) return kInvalid;
+  if (options.printConfig) {
+    PrintConfiguration(session);
+    return kDone;
+  }
+  return session;
+}
+
+void PrintConfiguration(const Session& session) {
+  struct Row {
+    std::string path, value, unit, origin;
+  };
+  std::vector<Row> rows;
+  std::size_t widest = 0, widestValue = 0;
+  for (const Parameter& parameter : Parameters()) {
+    const ParameterGroup& group = *FindGroup(parameter.group);
+    const std::size_t count = group.count(session.scene);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string object = "/" + std::string(parameter.group) + (group.isArray ? "/" + std::to_string(i) : "");
+      const std::string path = object + "/" + std::string(parameter.name);
+      Row row;
+      row.path = SetPath(parameter, group, i, count);
+      row.value = FormatValue(parameter.get(session.scene, i));
+      row.unit = parameter.unit;
+      if (const auto set = session.assignments.find(path); set != session.assignments.end()) {
+        row.origin = "--set " + ShellWord(set->second);
+      } else if (const auto place = session.origins.find(path); place != session.origins.end()) {
+        row.origin =
+            place->second.file + ":" + std::to_string(place->second.line) + ":" + std::to_string(place->second.column);
+      } else {
+        row.origin = "default";
+      }
+      widest = std::max(widest, row.path.size());
+      widestValue = std::max(widestValue, row.value.size() + row.unit.size() + 1);
+      rows.push_back(std::move(row));
+    }
+  }
+  widestValue = std::min<std::size_t>(widestValue, 40);
+  for (const Row& row : rows) {
+    const std::string value = row.value + (row.unit.empty() ? "" : " " + row.unit);
+    std::printf("%-*s = %-*s  # %s\n", int(widest), row.path.c_str(), int(widestValue), value.c_str(),
+                row.origin.c_str());
+  }
+}
+
+std::string ShellWord(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./=,:@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string SceneArguments(const Options& options, const Session& session) {
+  std::string text = ShellWord(PathText(session.file));
+  for (const std::string& assignment : options.set) text += " --set " + ShellWord(assignment);
+  return text;
+}
+
+std::string Megabytes(double bytes) {
+  if (bytes < 1e4) return Text("%.0f bytes", bytes);
+  if (bytes < 1e6) return Text("%.0f kB", bytes / 1e3);
+  if (bytes < 1e9) return Text("%.1f MB", bytes / 1e6);
+  return Text("%.1f GB", bytes / 1e9);
+}
+
+std::string Text(const char* format, ...) {
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  const int length = std::vsnprintf(nullptr, 0, format, arguments);
+  va_end(arguments);
+  std::string text(length > 0 ? std::size_t(length) : 0, '\0');
+  if (length > 0) std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  return text;
+}
+
+}  // namespace percale::cli

@@ -1,0 +1,38 @@
+#include <cstdio>
+
+#include "apps/cli/pictures.h"
+#include "apps/cli/platform.h"
+#include "apps/cli/run.h"
+#include "apps/cli/verbs.h"
+#include "io/atomic_file.h"
+
+namespace percale::cli {
+
+namespace fs = std::filesystem;
+
+int Shot(const Options& options) {
+  auto opened = OpenSession(options);
+  if (const int* code = std::get_if<int>(&opened)) return *code;
+  const Session& session = std::get<Session>(opened);
+
+  const fs::path file = options.output.empty() ? DefaultOutput(session, ".png") : TextPath(options.output);
+  const std::string extension = PathText(file.extension());
+  if (extension != ".png" && extension != ".PNG" && options.output.rfind("/dev/", 0) != 0) {
+    PrintError("-o: expected a name that ends in .png (or a whole number, the longitudes of spheres), got " +
+               ShellWord(PathText(file)));
+    return kUsage;
+  }
+  if (const int code = CheckWritable(file); code != kDone) return code;
+  auto studio = OpenStudio(options, session);
+  if (const int* code = std::get_if<int>(&studio)) return *code;
+
+  CatchInterrupts();
+  World world(session.scene, {.threads = options.threads});
+  const RunEnd end = Run(world, PlanRun(options, session.scene, 0), options, session, [] { return int(kDone); });
+  if (const int code = WritePicture(std::get<Studio>(studio), world, file); code != kDone) return code;
+  std::fprintf(options.output == "/dev/stdout" ? stderr : stdout, "%s: frame %d, %.4g s%s\n", PathText(file).c_str(),
+               world.report().frame, world.report().time, world.report().atRest ? ", at rest" : "");
+  return CodeOf(end);
+}
+
+}  // namespace percale::cli

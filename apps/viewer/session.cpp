@@ -1,0 +1,443 @@
+#include "apps/viewer/session.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "core/text.h"
+#include "io/atomic_file.h"
+#include "percale/scene_file.h"
+
+namespace percale::viewer {
+namespace {
+
+/// Files are looked at this often [s]; a change shows after two looks.
+constexpr double kLookPeriod = 0.1;
+/// While running, states are logged this often [s].
+constexpr double kStatePeriod = 0.1;
+
+/// "/cloth/0/ks", or with kAll "/cloth/ks".
+std::string Path(const Parameter& parameter, int index) {
+  std::string path = "/" + std::string(parameter.group);
+  if (FindGroup(parameter.group)->isArray && index != Session::kAll) path += "/" + std::to_string(index);
+  return path + "/" + std::string(parameter.name);
+}
+
+/// Whether two scenes have the same values in all parameters of a group that is a single object.
+bool SameGroup(std::string_view group, const Scene& a, const Scene& b) {
+  for (const Parameter& parameter : Parameters()) {
+    if (parameter.group == group && parameter.get(a, 0) != parameter.get(b, 0)) return false;
+  }
+  return true;
+}
+
+bool SameView(const OrbitCamera& a, const OrbitCamera& b) {
+  return a.target() == b.target() && a.distance() == b.distance() && a.azimuth() == b.azimuth() &&
+         a.elevation() == b.elevation();
+}
+
+std::string_view SeverityName(Severity severity) {
+  return severity == Severity::Error ? "error" : severity == Severity::Warning ? "warning" : "note";
+}
+
+/// Messages that concern the whole session are for the terminal as well.
+bool GoesToTerminal(const std::string& source) {
+  return source.rfind("settings", 0) != 0 && source.rfind("input ", 0) != 0;
+}
+
+}  // namespace
+
+Session::Session(const ViewerOptions& options, ShaderLibrary& shaders, SessionLog log, std::function<void()> wake)
+    : options_(options),
+      shaders_(shaders),
+      log_(std::move(log)),
+      messages_([this](const std::string& source, const Diagnostic* diagnostic) {
+        if (diagnostic && GoesToTerminal(source)) std::fputs(Format(*diagnostic).c_str(), stderr);
+        if (!log_.enabled()) return;
+        LogLine line(diagnostic ? "message" : "mended");
+        line.Text("source", source);
+        if (diagnostic) {
+          line.Text("severity", SeverityName(diagnostic->severity)).Text("text", diagnostic->message);
+          if (!diagnostic->place.file.empty()) line.Text("file", diagnostic->place.file);
+          if (diagnostic->place.line > 0) line.Number("line", diagnostic->place.line);
+          if (diagnostic->place.column > 0) line.Number("column", diagnostic->place.column);
+        }
+        log_.Write(line);
+      }),
+      scene_(options.scene),
+      fileScene_(options.scene),
+      sceneFile_(options.sceneFile),
+      browsed_(options.sceneFile),
+      sceneWatch_(options.sceneFile),
+      simulation_(options.scene, {options.threads, log_.enabled(), std::move(wake)}) {
+  view_ = options_.view;
+  scene_.look = view_.look;
+  cameraMoved_ = !SameView(view_.camera, OrbitCamera::ForScene(scene_));
+  simulation_.TakeSnapshot(snapshot_);
+}
+
+Session::~Session() = default;
+
+// Time.
+
+bool Session::running() const {
+  return lastDone_ == lastSent_ ? snapshot_.running : wantsRunning_;
+}
+
+void Session::LogCommand(LogLine line, std::uint64_t command) {
+  lastSent_ = command;
+  if (log_.enabled()) log_.Write(line.Number("command", static_cast<double>(command)));
+}
+
+void Session::TogglePause() {
+  wantsRunning_ = !running();
+  LogCommand(LogLine("run").Flag("running", wantsRunning_), simulation_.SetRunning(wantsRunning_));
+}
+
+bool Session::StepOneFrame() {
+  if (running()) return false;
+  LogCommand(LogLine("step").Number("frames", 1), simulation_.StepFrames(1));
+  return true;
+}
+
+void Session::ResetCloth() {
+  LogCommand(LogLine("reset"), simulation_.Reset());
+}
+
+// Settings.
+
+bool Session::SetParameter(const Parameter& parameter, int index, const Value& value) {
+  const std::string source = "input " + Path(parameter, index);
+  const auto refuse = [&](const std::string& why) {
+    messages_.Set(source, {MakeError(std::string(parameter.label) + ": " + why + "; the old value stays")});
+    return false;
+  };
+  if (const auto problem = CheckValue(parameter, value)) return refuse(*problem);
+  const ParameterGroup& group = *FindGroup(parameter.group);
+  const std::size_t count = group.count(scene_);
+  Scene changed = scene_;
+  std::vector<int> set;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (group.isArray && index != kAll && static_cast<std::size_t>(index) != i) continue;
+    if (parameter.get(scene_, i) == value) continue;
+    parameter.set(changed, i, value);
+    set.push_back(static_cast<int>(i));
+  }
+  if (!set.empty()) {
+    for (const Diagnostic& d : CheckScene(changed)) {
+      if (d.severity == Severity::Error) return refuse(d.message);
+    }
+    scene_ = std::move(changed);
+    const bool isView = parameter.group == "look" || parameter.group == "camera";
+    std::uint64_t command = 0;
+    if (isView) {
+      AdoptLook();
+    } else {
+      command = lastSent_ = simulation_.Apply(scene_);
+      CheckSettings();
+    }
+    for (const int i : set) {
+      if (!log_.enabled()) break;
+      LogLine line("set");
+      line.Text("path", Path(parameter, i)).Json("value", FormatValue(value));
+      if (command) line.Number("command", static_cast<double>(command));
+      log_.Write(line);
+    }
+  }
+  messages_.Set(source, {});
+  return true;
+}
+
+void Session::RefuseText(const Parameter& parameter, int index, std::string_view text, std::string_view expected) {
+  messages_.Set("input " + Path(parameter, index),
+                {MakeError(std::string(parameter.label) + ": expected " + std::string(expected) + ", got " +
+                           Quote(text, 40) + "; the old value stays")});
+}
+
+/// Warnings about the settings as they are now. Those that a slider has left behind are not kept.
+void Session::CheckSettings() {
+  messages_.Set("settings", CheckScene(scene_), true);
+}
+
+// View.
+
+/// Draws as the scene's look says.
+void Session::AdoptLook() {
+  const bool other = view_.look.shader != scene_.look.shader;
+  view_.look = scene_.look;
+  if (!other) return;
+  if (log_.enabled()) log_.Write(LogLine("shader").Text("name", view_.look.shader));
+  RefreshShaderMessages();
+}
+
+void Session::Orbit(double dx, double dy, int width, int height) {
+  view_.camera.Orbit(dx, dy, width, height);
+  cameraMoved_ = cameraUnlogged_ = true;
+}
+void Session::Pan(double dx, double dy, int width, int height) {
+  view_.camera.Pan(dx, dy, width, height);
+  cameraMoved_ = cameraUnlogged_ = true;
+}
+void Session::Dolly(double steps) {
+  view_.camera.Dolly(steps);
+  cameraMoved_ = cameraUnlogged_ = true;
+}
+void Session::ResetCamera() {
+  view_.camera = OrbitCamera::ForScene(scene_);
+  cameraMoved_ = false;
+  cameraUnlogged_ = true;
+}
+
+void Session::SetShader(const std::string& name) {
+  scene_.look.shader = name;
+  AdoptLook();
+}
+
+void Session::CycleShader(int by) {
+  const std::vector<std::string>& names = shaders_.names();
+  const int count = static_cast<int>(names.size());
+  if (count == 0) return;
+  const auto found = std::find(names.begin(), names.end(), view_.look.shader);
+  // From a shader that is no more, forwards leads to the first.
+  const int at = found == names.end() ? (by > 0 ? -1 : 0) : static_cast<int>(found - names.begin());
+  SetShader(names[static_cast<std::size_t>(((at + by) % count + count) % count)]);
+}
+
+std::span<const ShaderParameter> Session::ShaderParameters() {
+  return shaders_.Parameters(view_.look.shader);
+}
+
+UniformValue Session::Uniform(const ShaderParameter& parameter) const {
+  const auto found = view_.uniforms.find(parameter.name);
+  return found == view_.uniforms.end() ? parameter.defaultValue : found->second;
+}
+
+void Session::SetUniform(const ShaderParameter& parameter, const UniformValue& value) {
+  view_.uniforms[parameter.name] = value;
+  if (!log_.enabled()) return;
+  log_.Write(LogLine("uniform")
+                 .Text("shader", view_.look.shader)
+                 .Text("name", parameter.name)
+                 .Vector("value", {value[0], value[1], value[2]}));
+}
+
+/// What is wrong with the current shader, and with those that something was wrong with before.
+void Session::RefreshShaderMessages() {
+  reportedShaders_.insert(view_.look.shader);
+  for (auto name = reportedShaders_.begin(); name != reportedShaders_.end();) {
+    const std::vector<std::string>& known = shaders_.names();
+    const bool isCurrent = *name == view_.look.shader;
+    const bool exists = std::find(known.begin(), known.end(), *name) != known.end();
+    const Diagnostics problems = isCurrent || exists ? shaders_.Problems(*name) : Diagnostics{};
+    messages_.Set("shader " + *name, problems);
+    if (problems.empty())
+      name = reportedShaders_.erase(name);
+    else
+      ++name;
+  }
+}
+
+// Files.
+
+bool Session::Load(const std::filesystem::path& file, const std::string& source, Scene& scene, bool& statesShader) {
+  Origins origins;
+  Result<Scene> loaded = LoadScene(file, &origins);
+  if (!loaded) {
+    messages_.Set(source, loaded.diagnostics());
+    return false;
+  }
+  statesShader = origins.count("/look/shader") > 0;
+  Diagnostics problems;
+  if (file == options_.sceneFile) {
+    for (const std::string& assignment : options_.set) {
+      const auto applied = ApplyAssignment(*loaded, assignment);
+      if (applied) continue;
+      for (Diagnostic d : applied.diagnostics()) {
+        d.severity = Severity::Warning;  // The rest of the scene is good.
+        problems.push_back(std::move(d));
+      }
+    }
+  }
+  const Diagnostics checked = CheckScene(*loaded);
+  if (HasErrors(checked)) {
+    messages_.Set(source, checked);
+    return false;
+  }
+  // What CheckScene warns of is told as a property of the settings, which sliders can mend.
+  for (const Diagnostic& d : loaded.diagnostics()) {
+    if (std::none_of(checked.begin(), checked.end(), [&](const Diagnostic& c) { return c.message == d.message; }))
+      problems.push_back(d);
+  }
+  messages_.Set(source, problems);
+  scene = std::move(*loaded);
+  return true;
+}
+
+void Session::ReloadScene() {
+  sceneWatch_.Accept();
+  Scene loaded;
+  bool statesShader = false;
+  if (!Load(sceneFile_, "scene", loaded, statesShader)) return;
+  // The file's values count, but what the user chose to see stays unless the file has changed it.
+  const LookSettings look = scene_.look;
+  const bool sameLook = SameGroup("look", loaded, fileScene_), sameCamera = SameGroup("camera", loaded, fileScene_);
+  fileScene_ = loaded;
+  scene_ = std::move(loaded);
+  if (sameLook) scene_.look = look;
+  AdoptLook();
+  LogCommand(LogLine("reload").Text("what", "scene").Text("file", PathText(sceneFile_)), simulation_.Apply(scene_));
+  if (!cameraMoved_ || !sameCamera) ResetCamera();
+  CheckSettings();
+}
+
+void Session::Reload() {
+  ReloadScene();
+  shaders_.Reload();
+  if (log_.enabled()) log_.Write(LogLine("reload").Text("what", "shaders"));
+  RefreshShaderMessages();
+}
+
+bool Session::OpenScene(const std::filesystem::path& file) {
+  browsed_ = file;
+  Scene loaded;
+  bool statesShader = false;
+  if (!Load(file, "open", loaded, statesShader)) return false;
+  const std::string shader = scene_.look.shader;
+  sceneFile_ = file;
+  sceneWatch_ = FileWatch(file);
+  fileScene_ = loaded;
+  scene_ = std::move(loaded);
+  if (!statesShader) scene_.look.shader = shader;
+  AdoptLook();
+  messages_.Set("scene", {});
+  if (log_.enabled()) log_.Write(LogLine("open").Text("scene", PathText(file)));
+  wantsRunning_ = false;
+  LogCommand(LogLine("run").Flag("running", false), simulation_.SetRunning(false));
+  simulation_.Apply(scene_);
+  ResetCloth();
+  ResetCamera();
+  CheckSettings();
+  return true;
+}
+
+void Session::CycleScene(int by) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  const std::filesystem::path folder = browsed_.parent_path().empty() ? "." : browsed_.parent_path();
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().extension() == ".json") files.push_back(browsed_.parent_path() / entry->path().filename());
+  }
+  std::sort(files.begin(), files.end());
+  if (files.empty()) {
+    messages_.Set("open", {MakeError(PathText(folder), "there is no scene file (*.json) in this folder")});
+    return;
+  }
+  const int count = static_cast<int>(files.size());
+  const auto found = std::lower_bound(files.begin(), files.end(), browsed_);
+  int at = static_cast<int>(found - files.begin());
+  // From a file that is no more, forwards leads to the one that stands in its place.
+  if ((found == files.end() || *found != browsed_) && by > 0) --at;
+  OpenScene(files[static_cast<std::size_t>(((at + by) % count + count) % count)]);
+}
+
+// What comes by itself.
+
+bool Session::Update(double now) {
+  bool news = false;
+  if (simulation_.TakeSnapshot(snapshot_)) {
+    ReadSnapshot(now);
+    news = true;
+  } else if (stateUnlogged_ && now >= lastState_ + kStatePeriod) {
+    LogState(now);
+  }
+  if (const std::string failure = simulation_.TakeFailure(); !failure.empty()) {
+    messages_.Set("simulation", {MakeError(failure + "; open another scene file to go on, or close the viewer")});
+    news = true;
+  }
+  if (now >= nextLook_) {
+    if (nextLook_ == 0) {  // The first look, when the log has its first line.
+      CheckSettings();
+      RefreshShaderMessages();
+    }
+    nextLook_ = now + kLookPeriod;
+    if (shaders_.ReloadChanged()) {
+      if (log_.enabled()) log_.Write(LogLine("reload").Text("what", "shaders"));
+      RefreshShaderMessages();
+      news = true;
+    }
+    if (sceneWatch_.Changed()) {
+      ReloadScene();
+      news = true;
+    }
+  }
+  if (cameraUnlogged_) {
+    const OrbitCamera& camera = view_.camera;
+    if (log_.enabled()) {
+      log_.Write(LogLine("camera")
+                     .Number("azimuth", camera.azimuth())
+                     .Number("elevation", camera.elevation())
+                     .Number("distance", camera.distance())
+                     .Vector("target", camera.target()));
+    }
+    cameraUnlogged_ = false;
+  }
+  return news;
+}
+
+void Session::ReadSnapshot(double now) {
+  for (const Executed& done : snapshot_.executed) {
+    lastDone_ = std::max(lastDone_, done.command);
+    if (!log_.enabled()) continue;
+    log_.Write(LogLine("done")
+                   .Number("command", static_cast<double>(done.command))
+                   .Number("frame", done.frame)
+                   .Hash("hash", done.hash)
+                   .Flag("kept", done.stateKept));
+  }
+  Diagnostics problems;
+  if (const auto& divergence = snapshot_.report.divergence) {
+    const std::string where = snapshot_.cloths.size() > 1 ? " of cloth " + std::to_string(divergence->cloth) : "";
+    problems.push_back(MakeError("the simulation blew up at step " + std::to_string(divergence->step) + ", vertex " +
+                                 std::to_string(divergence->vertex) + where + ": " + divergence->cause + "; " +
+                                 divergence->remedy + "; then press R"));
+  }
+  messages_.Set("divergence", problems);
+  stateUnlogged_ = true;
+  if (!snapshot_.executed.empty() || now >= lastState_ + kStatePeriod) LogState(now);
+}
+
+void Session::LogState(double now) {
+  lastState_ = now;
+  stateUnlogged_ = false;
+  if (!log_.enabled()) return;
+  double lowest = snapshot_.cloths.empty() ? 0 : snapshot_.cloths[0].positions[0].y;
+  for (const ClothCopy& cloth : snapshot_.cloths) {
+    for (const Vec3& p : cloth.positions) lowest = std::min(lowest, p.y);
+  }
+  const StepReport& report = snapshot_.report;
+  log_.Write(LogLine("state")
+                 .Number("frame", report.frame)
+                 .Number("step", static_cast<double>(report.step))
+                 .Number("time", report.time)
+                 .Flag("running", snapshot_.running)
+                 .Hash("hash", snapshot_.hash)
+                 .Number("lowest", lowest)
+                 .Number("stretch", report.greatestStretch)
+                 .Number("energy", report.kineticEnergy)
+                 .Flag("rest", report.atRest)
+                 .Number("ms", snapshot_.frameSeconds * 1000)
+                 .Number("drawn", static_cast<double>(pictures_)));
+}
+
+std::string Session::Title() const {
+  return PathText(sceneFile_.filename()) + " - Percale" + (running() ? "" : " (paused)");
+}
+
+void Session::ReportDrawing(const Status& drawn, const Diagnostics& warnings) {
+  // The shader's own problems are told already.
+  const bool told = messages_.Holds("shader " + view_.look.shader);
+  messages_.Set("drawing", drawn || told ? Diagnostics{} : drawn.diagnostics());
+  for (const Diagnostic& warning : warnings) messages_.Add("drawing: " + warning.place.file, warning);
+}
+
+}  // namespace percale::viewer

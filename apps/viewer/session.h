@@ -1,0 +1,119 @@
+#pragma once
+/// \file
+/// What a session of the viewer is, apart from its window: the scene as it is set now, the
+/// simulation, the view, the messages, the files that are watched. Keys and panels call it; it
+/// knows neither. Everything that happens is written to the session log.
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/viewer/file_watch.h"
+#include "apps/viewer/messages.h"
+#include "apps/viewer/session_log.h"
+#include "apps/viewer/simulation.h"
+#include "apps/viewer/viewer.h"
+#include "percale/parameters.h"
+#include "render/scene_view.h"
+#include "render/shader_library.h"
+
+namespace percale::viewer {
+
+class Session {
+ public:
+  /// Every object of a group, in place of an index.
+  static constexpr int kAll = -1;
+
+  /// `shaders` must outlive the session. `wake` is called, on any thread, when Update has news.
+  Session(const ViewerOptions& options, ShaderLibrary& shaders, SessionLog log, std::function<void()> wake);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Takes what the simulation has done and looks at the watched files; call it once per picture, and
+  /// at least ten times per second. `now` counts seconds. Returns whether there is anything new to show.
+  bool Update(double now);
+
+  // Time.
+  void TogglePause();
+  /// One frame. Does nothing, and returns false, while running.
+  bool StepOneFrame();
+  void ResetCloth();
+  bool running() const;
+
+  // Settings.
+  const Scene& scene() const { return scene_; }  ///< As it is set now.
+  /// Sets a parameter of object `index` of its group, or of kAll, if the value will do; else a
+  /// message says why not, and the old value stays. Returns whether it was set.
+  bool SetParameter(const Parameter& parameter, int index, const Value& value);
+  /// A text that was typed for a parameter is no value; `shown` is what it should have been.
+  void RefuseText(const Parameter& parameter, int index, std::string_view text, std::string_view expected);
+
+  // View.
+  const View& view() const { return view_; }
+  void Orbit(double dx, double dy, int width, int height);
+  void Pan(double dx, double dy, int width, int height);
+  void Dolly(double steps);
+  void ResetCamera();
+  void SetShader(const std::string& name);
+  void CycleShader(int by);
+  std::span<const ShaderParameter> ShaderParameters();  ///< Of the current shader.
+  UniformValue Uniform(const ShaderParameter& parameter) const;
+  void SetUniform(const ShaderParameter& parameter, const UniformValue& value);
+  const std::vector<std::string>& shaderNames() const { return shaders_.names(); }
+
+  // Files.
+  void Reload();
+  /// Another scene, paused at its start. When it cannot be read the old one stays.
+  bool OpenScene(const std::filesystem::path& file);
+  /// The scene file that follows the current one in its folder, or with `by` < 0 the one before.
+  void CycleScene(int by);
+  const std::filesystem::path& sceneFile() const { return sceneFile_; }
+
+  const Snapshot& snapshot() const { return snapshot_; }  ///< The newest state.
+  Messages& messages() { return messages_; }
+  SessionLog& log() { return log_; }
+  std::string Title() const;
+  /// Problems of drawing the last picture, none if all went well.
+  void ReportDrawing(const Status& drawn, const Diagnostics& warnings);
+  void CountPicture() { ++pictures_; }
+
+ private:
+  /// Reads the scene and applies the assignments to it; reports what is wrong as of `source`.
+  bool Load(const std::filesystem::path& file, const std::string& source, Scene& scene, bool& statesShader);
+  void ReloadScene();
+  void AdoptLook();
+  void CheckSettings();
+  void RefreshShaderMessages();
+  void ReadSnapshot(double now);
+  void LogState(double now);
+  void LogCommand(LogLine line, std::uint64_t command);
+
+  const ViewerOptions options_;
+  ShaderLibrary& shaders_;
+  SessionLog log_;
+  Messages messages_;
+  Scene scene_;
+  Scene fileScene_;  // As it was read last.
+  std::filesystem::path sceneFile_;
+  std::filesystem::path browsed_;  // Where CycleScene stands, which may be a file that could not be read.
+  FileWatch sceneWatch_;
+  View view_;
+  bool cameraMoved_ = false;    // By the user.
+  bool cameraUnlogged_ = false;
+  Snapshot snapshot_;
+  Simulation simulation_;
+  bool wantsRunning_ = false;
+  std::uint64_t lastSent_ = 0, lastDone_ = 0;
+  double nextLook_ = 0;    // At the files [s].
+  double lastState_ = -1;  // Logged [s].
+  bool stateUnlogged_ = false;
+  std::set<std::string> reportedShaders_;
+  std::int64_t pictures_ = 0;
+};
+
+}  // namespace percale::viewer

@@ -1,0 +1,130 @@
+#pragma once
+/// \file
+/// A World on a thread of its own. The window sends commands and takes copies of the newest state;
+/// neither waits for the other, so a cloth of any size leaves the window answering.
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "percale/world.h"
+
+namespace percale::viewer {
+
+/// What of a cloth stays the same from frame to frame. Never changed once made.
+struct ClothTopology {
+  std::vector<Vec2> uv;
+  std::vector<Triangle> triangles;
+  std::vector<Edge> springs;  ///< Of the enabled kinds.
+};
+
+struct ClothCopy {
+  std::vector<Vec3> positions;  ///< [m]
+  std::shared_ptr<const ClothTopology> topology;
+};
+
+/// A command that has been carried out.
+struct Executed {
+  std::uint64_t command = 0;  ///< Its number.
+  int frame = 0;              ///< The frame after which it acted; for steps, the frame that they ended with.
+  std::uint64_t hash = 0;     ///< World::StateHash afterwards; 0 unless hashes were asked for.
+  bool stateKept = true;      ///< Whether the cloths are where they were: false after a reset or a rebuild.
+};
+
+/// A copy of everything that the window shows of a World, of one moment.
+struct Snapshot {
+  std::shared_ptr<const Scene> scene;
+  std::vector<ClothCopy> cloths;  ///< In the scene's order.
+  StepReport report;
+  bool running = false;
+  double frameSeconds = 0;      ///< Wall-clock time of the last frame [s]; 0 before the first.
+  double framesPerSecond = 0;   ///< Simulated in the last half second of running; 0 while paused.
+  std::uint64_t hash = 0;       ///< World::StateHash; 0 unless hashes were asked for.
+  std::vector<Executed> executed;  ///< Since the last snapshot that was taken, in order.
+};
+
+struct SimulationOptions {
+  int threads = 0;      ///< Of the World; 0: as many as the machine has cores.
+  bool hashes = false;  ///< Fingerprint every state, for a log.
+  /// Called on the simulation's thread when there is a new snapshot. It must not call back.
+  std::function<void()> onSnapshot = {};
+};
+
+class Simulation {
+ public:
+  /// Builds the World of `scene`, which must pass CheckScene, and starts paused.
+  Simulation(Scene scene, SimulationOptions options);
+  /// Waits for the frame under way, then ends the thread.
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  // Commands are carried out in order, between two frames. Each returns its number, from 1 on.
+
+  /// Runs in real time, simulation.frames_per_second frames each second, or as fast as it can where
+  /// that is slower; or pauses.
+  std::uint64_t SetRunning(bool running);
+  /// Runs `frames` >= 1 frames; paused or not.
+  std::uint64_t StepFrames(int frames);
+  /// Back to the start, with the settings as they are.
+  std::uint64_t Reset();
+  /// Takes changed settings as World::Apply does. Of several that wait, the newest alone is carried out.
+  std::uint64_t Apply(Scene scene);
+
+  /// Puts the newest state into `snapshot`, whose memory is used again. Returns false, and leaves it
+  /// alone, when there is none since the last call.
+  bool TakeSnapshot(Snapshot& snapshot);
+  /// Why the simulation ended by itself ("the simulation ran out of memory"), told once; else empty.
+  std::string TakeFailure();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Command {
+    enum class Kind { Run, Pause, Step, Reset, Apply } kind = Kind::Pause;
+    std::uint64_t number = 0;
+    int frames = 0;
+    std::unique_ptr<Scene> scene;
+  };
+
+  std::uint64_t Send(Command command);
+  void Loop();
+  void LoopOrThrow();
+  void Execute(Command& command);
+  void StepOneFrame();
+  void Publish();
+  void CopyTopologies();
+
+  // The simulation's thread only, once it runs.
+  SimulationOptions options_;
+  World world_;
+  std::shared_ptr<const Scene> scene_;
+  std::vector<std::shared_ptr<const ClothTopology>> topologies_;
+  Snapshot back_;
+  bool running_ = false;
+  double frameSeconds_ = 0;
+  double framesPerSecond_ = 0;
+  std::vector<Executed> executed_;
+  Clock::time_point nextFrame_, rateSince_;
+  int framesSince_ = 0;
+
+  // Shared.
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<Command> commands_;
+  std::uint64_t lastNumber_ = 0;
+  bool stop_ = false;
+  Snapshot ready_;
+  bool fresh_ = false;
+  std::string failure_;
+
+  std::thread thread_;
+};
+
+}  // namespace percale::viewer

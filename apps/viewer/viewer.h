@@ -1,0 +1,31 @@
+#pragma once
+/// \file
+/// The interactive viewer.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "percale/scene.h"
+#include "render/scene_view.h"
+
+namespace percale {
+
+struct ViewerOptions {
+  Scene scene;                       ///< As loaded, with `set` applied; must pass CheckScene.
+  std::filesystem::path sceneFile;   ///< Where it is from: watched, and read again when it changes and by F5.
+  std::vector<std::string> set;      ///< "PATH=VALUE", applied again each time `sceneFile` is read.
+  std::filesystem::path root = ".";  ///< The project's folder, with shaders/ and textures/.
+  View view;                         ///< What the window opens with.
+  int width = 1024, height = 800;    ///< Of the window, on a display of ordinary density [pixel].
+  int samples = 0;                   ///< Per pixel; 0: 4, or 1 where the CPU draws.
+  int threads = 0;                   ///< Of the simulation; 0: as many as there are cores.
+  std::filesystem::path log;         ///< Session log (apps/viewer/session_log.h); empty: none.
+};
+
+/// Shows the scene in a window, paused, until the user closes it. Messages go to stderr. Returns an
+/// exit code: 0 closed by the user, 1 the log cannot be written, 3 the scene or the shaders will not
+/// do, 5 no display or no OpenGL 3.3 (with what to do about it), 130 interrupted from the terminal.
+int RunViewer(const ViewerOptions& options);
+
+}  // namespace percale

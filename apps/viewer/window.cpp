@@ -1,0 +1,290 @@
+#include "apps/viewer/window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+#include <imgui_impl_glfw.h>
+#include <imgui_impl_opengl3.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "apps/viewer/style.h"
+#include "io/atomic_file.h"
+#include "render/gl_device.h"
+
+namespace percale::viewer {
+namespace {
+
+constexpr int kAutomaticSamples = 4;
+
+/// What GLFW said last, on the thread that calls it.
+std::string& LastError() {
+  static std::string text;
+  return text;
+}
+
+Diagnostic NoGraphics(const std::string& what, const std::string& remedy) {
+  std::string message = what;
+  if (!LastError().empty()) message += " (" + std::exchange(LastError(), {}) + ")";
+  return MakeError(message + "; " + remedy);
+}
+
+SpecialKey SpecialKeyOf(int key) {
+  switch (key) {
+    case GLFW_KEY_ESCAPE:
+      return SpecialKey::Escape;
+    case GLFW_KEY_TAB:
+      return SpecialKey::Tab;
+    case GLFW_KEY_F1:
+      return SpecialKey::F1;
+    case GLFW_KEY_F5:
+      return SpecialKey::F5;
+    default:
+      return SpecialKey::None;
+  }
+}
+
+}  // namespace
+
+/// What GLFW calls. ImGui's own callbacks are installed afterwards and call these first.
+struct Window::Callbacks {
+  static Input& Of(GLFWwindow* window) {
+    Input& input = *static_cast<Input*>(glfwGetWindowUserPointer(window));
+    input.activity = true;
+    return input;
+  }
+  static void Add(GLFWwindow* window, InputEvent event) { Of(window).events.push_back(std::move(event)); }
+
+  static void Key(GLFWwindow* window, int key, int, int action, int) {
+    Of(window).lastRepeated = action == GLFW_REPEAT;
+    const SpecialKey special = SpecialKeyOf(key);
+    if (action == GLFW_RELEASE || special == SpecialKey::None) return;
+    InputEvent event;
+    event.kind = InputEvent::Kind::Special;
+    event.special = special;
+    event.repeated = action == GLFW_REPEAT;
+    Add(window, event);
+  }
+  static void Character(GLFWwindow* window, unsigned codepoint) {
+    if (codepoint > 0x7e) return;  // No action has such a key.
+    InputEvent event;
+    event.kind = InputEvent::Kind::Character;
+    event.character = static_cast<char>(codepoint);
+    event.repeated = Of(window).lastRepeated;
+    Add(window, event);
+  }
+  static void Button(GLFWwindow* window, int button, int action, int modifiers) {
+    if (button != GLFW_MOUSE_BUTTON_LEFT && button != GLFW_MOUSE_BUTTON_RIGHT) return;
+    InputEvent event;
+    event.kind = action == GLFW_PRESS ? InputEvent::Kind::Press : InputEvent::Kind::Release;
+    event.button = button == GLFW_MOUSE_BUTTON_LEFT ? InputEvent::Button::Left : InputEvent::Button::Right;
+    event.control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    glfwGetCursorPos(window, &event.x, &event.y);
+    Add(window, event);
+  }
+  static void Move(GLFWwindow* window, double x, double y) {
+    InputEvent event;
+    event.x = x;
+    event.y = y;
+    Add(window, event);
+  }
+  static void Wheel(GLFWwindow* window, double, double steps) {
+    InputEvent event;
+    event.kind = InputEvent::Kind::Wheel;
+    event.steps = steps;
+    Add(window, event);
+  }
+  static void Drop(GLFWwindow* window, int count, const char** files) {
+    for (int i = 0; i < count; ++i) {
+      InputEvent event;
+      event.kind = InputEvent::Kind::Drop;
+      event.file = TextPath(files[i]);
+      Add(window, event);
+    }
+  }
+  static void Resized(GLFWwindow* window, int, int) { Of(window); }
+  static void Scaled(GLFWwindow* window, float, float) { Of(window); }
+  static void Focused(GLFWwindow* window, int) { Of(window); }
+  static void Refreshed(GLFWwindow* window) { Of(window); }
+};
+
+Result<GLFWwindow*> Window::Create(const WindowSettings& settings, int samples) {
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_DEPTH_BITS, 24);
+  glfwWindowHint(GLFW_SAMPLES, samples > 1 ? samples : 0);
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, "percale");
+  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "percale");
+  GLFWwindow* window = glfwCreateWindow(settings.width, settings.height, settings.title.c_str(), nullptr, nullptr);
+  if (!window) {
+    return NoGraphics("this display offers no OpenGL 3.3",
+                      "update the graphics driver, or draw with the CPU: on Debian install libgl1-mesa-dri, then run "
+                      "with LIBGL_ALWAYS_SOFTWARE=1; `percale shot` and `percale render` need no display");
+  }
+  glfwMakeContextCurrent(window);
+  return window;
+}
+
+Result<Window> Window::Open(const WindowSettings& settings) {
+  glfwSetErrorCallback([](int, const char* text) { LastError() = text; });
+  if (!glfwInit()) {
+    return NoGraphics("there is no display to open a window on",
+                      "start the viewer from a desktop session, or over ssh with `ssh -X`; `percale shot`, `percale "
+                      "render` and `percale simulate` need no display");
+  }
+  Window self;
+  self.title_ = settings.title;
+  const int asked = std::max(settings.samples, 0);
+  Result<GLFWwindow*> made = Create(settings, asked == 0 ? 1 : asked);
+  if (!made && asked > 1) made = Create(settings, 1);  // More than the card has.
+  if (!made) {
+    glfwTerminate();
+    return made.diagnostics();
+  }
+  self.samples_ = std::max(asked, 1);
+  if (asked == 0 && !DescribeGraphics().software) {
+    if (Result<GLFWwindow*> smooth = Create(settings, kAutomaticSamples)) {
+      glfwDestroyWindow(*made);
+      made = *smooth;
+      self.samples_ = kAutomaticSamples;
+    }
+    glfwMakeContextCurrent(*made);
+  }
+  GLFWwindow* const window = self.window_ = *made;
+  self.input_ = new Input;
+  glfwSetWindowUserPointer(window, self.input_);
+  glfwSetKeyCallback(window, Callbacks::Key);
+  glfwSetCharCallback(window, Callbacks::Character);
+  glfwSetMouseButtonCallback(window, Callbacks::Button);
+  glfwSetCursorPosCallback(window, Callbacks::Move);
+  glfwSetScrollCallback(window, Callbacks::Wheel);
+  glfwSetDropCallback(window, Callbacks::Drop);
+  glfwSetFramebufferSizeCallback(window, Callbacks::Resized);
+  glfwSetWindowContentScaleCallback(window, Callbacks::Scaled);
+  glfwSetWindowFocusCallback(window, Callbacks::Focused);
+  glfwSetWindowRefreshCallback(window, Callbacks::Refreshed);
+  glfwSwapInterval(1);
+
+  IMGUI_CHECKVERSION();
+  self.context_ = ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // The panels stand where they belong at every start.
+  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  ImGui_ImplOpenGL3_Init("#version 330");
+  self.AdaptToScale();
+  return self;
+}
+
+Window::Window(Window&& other) noexcept {
+  *this = std::move(other);
+}
+
+Window& Window::operator=(Window&& other) noexcept {
+  std::swap(window_, other.window_);
+  std::swap(context_, other.context_);
+  std::swap(input_, other.input_);
+  std::swap(samples_, other.samples_);
+  std::swap(scale_, other.scale_);
+  std::swap(contentScale_, other.contentScale_);
+  std::swap(title_, other.title_);
+  return *this;
+}
+
+Window::~Window() {
+  if (context_) {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext(context_);
+  }
+  if (!window_) return;
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+  delete input_;
+}
+
+void Window::Show() {
+  glfwShowWindow(window_);
+}
+void Window::Hide() {
+  glfwHideWindow(window_);
+}
+
+void Window::WaitForEvents(double seconds) {
+  if (seconds > 0)
+    glfwWaitEventsTimeout(seconds);
+  else
+    glfwPollEvents();
+}
+
+void Window::Wake() {
+  glfwPostEmptyEvent();
+}
+
+bool Window::TakeActivity() {
+  return std::exchange(input_->activity, false);
+}
+
+std::vector<InputEvent> Window::TakeEvents() {
+  return std::exchange(input_->events, {});
+}
+
+/// Fonts and sizes for the density of the display that the window is on.
+void Window::AdaptToScale() {
+  float contentScale = 1, unused = 1;
+  glfwGetWindowContentScale(window_, &contentScale, &unused);
+  contentScale = std::clamp(contentScale, 0.5f, 8.0f);
+  if (contentScale == contentScale_) return;
+  // Where a screen unit is several pixels (macOS), fonts are made as large as the pixels want them and
+  // drawn smaller.
+  int width = 1, height = 1, pixels = 1;
+  glfwGetWindowSize(window_, &width, &height);
+  glfwGetFramebufferSize(window_, &pixels, &height);
+  const float pixelsPerUnit = width > 0 && pixels > 0 ? static_cast<float>(pixels) / static_cast<float>(width) : 1;
+  contentScale_ = contentScale;
+  scale_ = contentScale / pixelsPerUnit;
+  ApplyStyle(scale_, contentScale, pixelsPerUnit);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();  // Made again from the new fonts with the next picture.
+}
+
+void Window::BeginPanels() {
+  AdaptToScale();
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void Window::EndPanels() {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Window::Present() {
+  glfwSwapBuffers(window_);
+}
+
+bool Window::ShouldClose() const {
+  return glfwWindowShouldClose(window_) != 0;
+}
+bool Window::Minimized() const {
+  return glfwGetWindowAttrib(window_, GLFW_ICONIFIED) != 0;
+}
+
+void Window::SetTitle(const std::string& title) {
+  if (title == title_) return;
+  title_ = title;
+  glfwSetWindowTitle(window_, title.c_str());
+}
+
+void Window::Size(int& width, int& height) const {
+  glfwGetWindowSize(window_, &width, &height);
+}
+void Window::FramebufferSize(int& width, int& height) const {
+  glfwGetFramebufferSize(window_, &width, &height);
+}
+
+}  // namespace percale::viewer

@@ -1,0 +1,96 @@
+#pragma once
+/// \file
+/// The window: GLFW and Dear ImGui set up, and what the user did with keys and mouse.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/viewer/actions.h"
+#include "percale/diagnostic.h"
+
+struct GLFWwindow;
+struct ImGuiContext;
+
+namespace percale::viewer {
+
+struct WindowSettings {
+  int width = 1024, height = 800;  ///< On a display of ordinary density [pixel]; larger where it is denser.
+  int samples = 0;                 ///< Per pixel; 0: 4, or 1 where the CPU draws.
+  std::string title;
+};
+
+struct InputEvent {
+  enum class Kind {
+    Character,  ///< A key that types `character`.
+    Special,    ///< A key that types none.
+    Press,      ///< Of a mouse button, at (x, y).
+    Release,
+    Move,   ///< The pointer is at (x, y) now.
+    Wheel,  ///< By `steps`.
+    Drop,   ///< Of `file` onto the window.
+  } kind = Kind::Move;
+  char character = 0;
+  SpecialKey special = SpecialKey::None;
+  bool repeated = false;  ///< The key is held.
+  enum class Button { Left, Right } button = Button::Left;
+  bool control = false;  ///< Ctrl was held at the press.
+  double x = 0, y = 0;   ///< [screen unit] from the top left.
+  double steps = 0;      ///< Away from the user.
+  std::filesystem::path file;
+};
+
+class Window {
+ public:
+  /// Opens a window that is not shown yet, its OpenGL 3.3 core context current. Fails, with what to
+  /// do about it, without a display or such a context: exit code 5.
+  static Result<Window> Open(const WindowSettings& settings);
+  ~Window();
+  Window(Window&& other) noexcept;
+  Window& operator=(Window&& other) noexcept;
+
+  void Show();
+  void Hide();
+  /// Waits for input, or Wake, for at most so long; 0: not at all.
+  void WaitForEvents(double seconds);
+  /// Ends WaitForEvents. The one function that any thread may call.
+  static void Wake();
+  /// Whether anything has happened to the window since the last call.
+  bool TakeActivity();
+  /// What the user did since the last call, in order.
+  std::vector<InputEvent> TakeEvents();
+
+  void BeginPanels();  ///< Starts a picture's panels: Dear ImGui may be called until EndPanels.
+  void EndPanels();    ///< Draws them.
+  void Present();      ///< Shows the picture.
+
+  bool ShouldClose() const;
+  bool Minimized() const;
+  void SetTitle(const std::string& title);
+  void Size(int& width, int& height) const;             ///< [screen unit]
+  void FramebufferSize(int& width, int& height) const;  ///< [pixel]
+  int samples() const { return samples_; }              ///< Per pixel, as asked for or chosen.
+  float scale() const { return scale_; }                ///< Of text and controls, in screen units.
+
+ private:
+  Window() = default;
+  static Result<GLFWwindow*> Create(const WindowSettings& settings, int samples);
+  struct Callbacks;
+  void AdaptToScale();
+
+  struct Input {
+    std::vector<InputEvent> events;
+    bool activity = true;
+    bool lastRepeated = false;  // Of the key that the next character belongs to.
+  };
+
+  GLFWwindow* window_ = nullptr;
+  ImGuiContext* context_ = nullptr;
+  Input* input_ = nullptr;  // Of a stable address, for the callbacks; owned.
+  int samples_ = 1;
+  float scale_ = 0;         // Of the present fonts and style.
+  float contentScale_ = 0;  // Of the display they were made for.
+  std::string title_;
+};
+
+}  // namespace percale::viewer
