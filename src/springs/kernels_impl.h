@@ -59,48 +59,48 @@ constexpr double kNoSpring = kNoSpringRest;
 /// and by the row after that.
 class Integrator {
  public:
-  PERCALE_INLINE explicit Integrator(const IntegrateArgs& args) : a(args), n(args.numWidth) {
-    double* free = a.scratch + kPad;
-    for (auto& kind : spring) {
-      for (double*& axis : kind) axis = free, free += RowStride(n);
+  PERCALE_INLINE explicit Integrator(const IntegrateArgs& args) : args_(args), n_(args.numWidth) {
+    double* free = args_.scratch + kPad;
+    for (auto& kind : spring_) {
+      for (double*& axis : kind) axis = free, free += RowStride(n_);
     }
-    for (auto& row : force) {
-      for (double*& axis : row) axis = free, free += RowStride(n);
+    for (auto& of : force_) {
+      for (double*& axis : of) axis = free, free += RowStride(n_);
     }
     for (int kind = 0; kind < kKinds; ++kind) {
-      step[kind] = static_cast<std::int64_t>(kDj[kind]) * n + kDi[kind];
-      stiffness[kind] = All(a.stiffness[kind]);
+      step_[kind] = static_cast<std::int64_t>(kDj[kind]) * n_ + kDi[kind];
+      stiffness_[kind] = All(args_.stiffness[kind]);
     }
   }
 
   PERCALE_INLINE std::int64_t Run() {
-    const int last = a.rowEnd + 2 < a.numHeight ? a.rowEnd + 2 : a.numHeight;
-    for (int j = a.rowBegin; j < last; ++j) {
+    const int last = args_.rowEnd + 2 < args_.numHeight ? args_.rowEnd + 2 : args_.numHeight;
+    for (int j = args_.rowBegin; j < last; ++j) {
       PrepareRow(j);
       // Springs are bound by division, sums by memory: done side by side they overlap. The sums lag
       // behind, since they need the springs of the columns to the right, and so far behind that
       // what they load has left the store buffer.
-      for (int i = 0; i < n; i += kLanes) {
-        if (activeCount == kKinds) {
+      for (int i = 0; i < n_; i += kLanes) {
+        if (activeCount_ == kKinds) {
           for (int kind = 0; kind < kKinds; ++kind) SpringBlock(kind, i);
         } else {
-          for (int k = 0; k < activeCount; ++k) SpringBlock(active[k], i);
+          for (int k = 0; k < activeCount_; ++k) SpringBlock(active_[k], i);
         }
         if (i >= kLag) SumBlock(j, i - kLag);
       }
-      for (int k = 0; k < activeCount; ++k) {
-        for (double* axis : spring[active[k]]) axis[n] = axis[n + 1] = 0;  // the last block wrote beyond the row
+      for (int k = 0; k < activeCount_; ++k) {
+        for (double* axis : spring_[active_[k]]) axis[n_] = axis[n_ + 1] = 0;  // the last block wrote beyond the row
       }
-      const int end = (n + kLanes - 1) / kLanes * kLanes;
-      for (int i = end > kLag ? end - kLag : 0; i < n; i += kLanes) SumBlock(j, i);
+      const int end = (n_ + kLanes - 1) / kLanes * kLanes;
+      for (int i = end > kLag ? end - kLag : 0; i < n_; i += kLanes) SumBlock(j, i);
     }
     // The last rows of the sheet have none below them that would complete their forces.
-    withTwoUp = false;
-    for (int j = last - 2 > a.rowBegin ? last - 2 : a.rowBegin; j < a.rowEnd; ++j) {
-      moving = j;
-      for (int i = 0; i < n; i += kLanes) MoveBlock(i);
+    withTwoUp_ = false;
+    for (int j = last - 2 > args_.rowBegin ? last - 2 : args_.rowBegin; j < args_.rowEnd; ++j) {
+      moving_ = j;
+      for (int i = 0; i < n_; i += kLanes) MoveBlock(i);
     }
-    return outOfBounds;
+    return outOfBounds_;
   }
 
  private:
@@ -108,92 +108,92 @@ class Integrator {
 
   /// Decides which kinds of springs row j creates that matter, and which rows they complete.
   PERCALE_INLINE void PrepareRow(int j) {
-    row = static_cast<std::int64_t>(j) * n;
-    activeCount = 0;
+    row_ = static_cast<std::int64_t>(j) * n_;
+    activeCount_ = 0;
     for (int kind = 0; kind < kKinds; ++kind) {
       const int other = j + kDj[kind];
-      if (other >= a.rowEnd) continue;  // both ends beyond the rows that move
-      if (other >= 0 && a.stiffness[kind] != 0) {
-        active[activeCount++] = kind;
+      if (other >= args_.rowEnd) continue;  // both ends beyond the rows that move
+      if (other >= 0 && args_.stiffness[kind] != 0) {
+        active_[activeCount_++] = kind;
         continue;
       }
-      for (double* axis : spring[kind]) {
-        for (int i = 0; i < n; ++i) axis[i] = 0;
+      for (double* axis : spring_[kind]) {
+        for (int i = 0; i < n_; ++i) axis[i] = 0;
       }
     }
-    sumOwn = j < a.rowEnd;
-    sumNext = j - 1 >= a.rowBegin && j - 1 < a.rowEnd;
-    withTwoUp = j - 2 >= a.rowBegin;
-    moving = j - 2;
+    sumOwn_ = j < args_.rowEnd;
+    sumNext_ = j - 1 >= args_.rowBegin && j - 1 < args_.rowEnd;
+    withTwoUp_ = j - 2 >= args_.rowBegin;
+    moving_ = j - 2;
   }
 
   /// Forces on the creators of four springs.
   PERCALE_INLINE void SpringBlock(int kind, int i) {
-    const std::int64_t at = row + i;
-    const Pack3 d = Load3(a.x, at + step[kind]) - Load3(a.x, at);
+    const std::int64_t at = row_ + i;
+    const Pack3 d = Load3(args_.x, at + step_[kind]) - Load3(args_.x, at);
     const Pack length = Sqrt(SquaredLength(d));
-    const Pack rest = Load(a.rest[kind] + at);
+    const Pack rest = Load(args_.rest[kind] + at);
     // Ends that coincide have no direction, and at the borders there is no spring.
     const Mask pulls = (length > All(0)) & (All(kNoSpring) > rest);
-    const Pack factor = Where(pulls, stiffness[kind] * (length - rest) / length);
-    Store(spring[kind][0] + i, d.x * factor);
-    Store(spring[kind][1] + i, d.y * factor);
-    Store(spring[kind][2] + i, d.z * factor);
+    const Pack factor = Where(pulls, stiffness_[kind] * (length - rest) / length);
+    Store(spring_[kind][0] + i, d.x * factor);
+    Store(spring_[kind][1] + i, d.y * factor);
+    Store(spring_[kind][2] + i, d.z * factor);
   }
 
   PERCALE_INLINE void SumBlock(int j, int i) {
     for (int axis = 0; axis < 3; ++axis) {
-      const auto of = [&](int kind, int column) { return Load(spring[kind][axis] + column); };
-      if (sumOwn) {
-        Pack sum = All(a.weight[axis]);
-        if (a.extraForce[axis]) sum = sum + Load(a.extraForce[axis] + row + i);
+      const auto of = [&](int kind, int column) { return Load(spring_[kind][axis] + column); };
+      if (sumOwn_) {
+        Pack sum = All(args_.weight[axis]);
+        if (args_.extraForce[axis]) sum = sum + Load(args_.extraForce[axis] + row_ + i);
         sum = sum + of(kLeft, i) + of(kUp, i) + of(kUpperLeft, i) + of(kUpperRight, i) + of(kTwoLeft, i) +
               of(kTwoUp, i) - of(kLeft, i + 1) - of(kTwoLeft, i + 2);
-        Store(force[j % 3][axis] + i, sum);
+        Store(force_[j % 3][axis] + i, sum);
       }
-      if (sumNext) {
-        double* sum = force[(j + 2) % 3][axis] + i;
+      if (sumNext_) {
+        double* sum = force_[(j + 2) % 3][axis] + i;
         Store(sum, Load(sum) - of(kUpperRight, i - 1) - of(kUp, i) - of(kUpperLeft, i + 1));
       }
     }
-    if (withTwoUp) MoveBlock(i);
+    if (withTwoUp_) MoveBlock(i);
   }
 
   /// Verlet for four points of the row that moves.
   PERCALE_INLINE void MoveBlock(int i) {
-    const std::int64_t at = static_cast<std::int64_t>(moving) * n + i;
-    const Pack bound = All(a.bound);
+    const std::int64_t at = static_cast<std::int64_t>(moving_) * n_ + i;
+    const Pack bound = All(args_.bound);
     for (int axis = 0; axis < 3; ++axis) {
-      Pack sum = Load(force[moving % 3][axis] + i);
-      if (withTwoUp) sum = sum - Load(spring[kTwoUp][axis] + i);
-      const Pack x = Load(a.x[axis] + at);
-      const Pack next = x + All(a.keep) * (x - Load(a.previous[axis] + at)) + All(a.forceToWay) * sum;
-      const unsigned good = Bits((next <= bound) & (All(-a.bound) <= next));
-      if (i + kLanes <= n) {
-        Store(a.previous[axis] + at, next);
-        outOfBounds += good != 15u;
+      Pack sum = Load(force_[moving_ % 3][axis] + i);
+      if (withTwoUp_) sum = sum - Load(spring_[kTwoUp][axis] + i);
+      const Pack x = Load(args_.x[axis] + at);
+      const Pack next = x + All(args_.keep) * (x - Load(args_.previous[axis] + at)) + All(args_.forceToWay) * sum;
+      const unsigned good = Bits((next <= bound) & (All(-args_.bound) <= next));
+      if (i + kLanes <= n_) {
+        Store(args_.previous[axis] + at, next);
+        outOfBounds_ += good != 15u;
         continue;
       }
       double lanes[kLanes];
       Store(lanes, next);
-      for (int lane = 0; i + lane < n; ++lane) {
-        a.previous[axis][at + lane] = lanes[lane];
-        outOfBounds += !(good >> lane & 1u);
+      for (int lane = 0; i + lane < n_; ++lane) {
+        args_.previous[axis][at + lane] = lanes[lane];
+        outOfBounds_ += !(good >> lane & 1u);
       }
     }
   }
 
-  const IntegrateArgs a;
-  const int n;
-  double* spring[kKinds][3];  // forces on the creators of one row
-  double* force[3][3];        // of rows j, j - 1, j - 2, in turn
-  std::int64_t step[kKinds];
-  Pack stiffness[kKinds];
-  std::int64_t row = 0;
-  int active[kKinds] = {}, activeCount = 0;
-  bool sumOwn = false, sumNext = false, withTwoUp = false;
-  int moving = 0;
-  std::int64_t outOfBounds = 0;
+  const IntegrateArgs args_;
+  const int n_;
+  double* spring_[kKinds][3];  // forces on the creators of one row
+  double* force_[3][3];        // of rows j, j - 1, j - 2, in turn
+  std::int64_t step_[kKinds];
+  Pack stiffness_[kKinds];
+  std::int64_t row_ = 0;
+  int active_[kKinds] = {}, activeCount_ = 0;
+  bool sumOwn_ = false, sumNext_ = false, withTwoUp_ = false;
+  int moving_ = 0;
+  std::int64_t outOfBounds_ = 0;
 };
 
 std::int64_t Integrate(const IntegrateArgs& args) {
