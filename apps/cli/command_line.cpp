@@ -256,6 +256,7 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   const auto verb = [&](Verb v, const char* summary, const char* examples) -> CLI::App& {
     CLI::App* sub = app.add_subcommand(std::string(VerbName(v)), summary);
     sub->footer(std::string("Examples:\n") + examples + "\n" + kExitCodes);
+    sub->group("Verbs");
     sub->callback([&builder, v] { builder.options().verb = v; });
     return *sub;
   };
@@ -300,10 +301,10 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   CLI::App& render =
       verb(Verb::Render, "Makes a video (mp4), or numbered pictures",
            "  percale render scene/sphere.json --seconds 4 --shader Phong -o sphere.mp4\n"
-           "  percale render scene/pinned2.json --frames 300 --fps 90 -o slow.mp4     a third of real time\n"
+           "  percale render scene/pinned2.json --frames 300 --fps 60 --size 1920x1080\n"
            "  percale render scene/plane.json -o pictures/                            numbered pictures\n"
-           "The video plays in real time at --fps up to the scene's frames per second: at 90 and 30 it shows\n"
-           "each third frame. Above the scene's rate it shows all frames, slowed down.\n");
+           "The video plays in real time: at 90 frames per second of the scene and 30 of the video it shows each\n"
+           "third frame. Without ffmpeg the video becomes a folder of numbered pictures.\n");
   builder.Scene(render, false);
   builder.Length(render, "default 300");
   builder.Picture(render);
@@ -407,7 +408,6 @@ std::variant<Options, int> ParseCommandLine(const std::vector<std::string>& argu
   app.add_flag("--version", version, "Prints the version, and ends");
   app.get_formatter()->column_width(28);
   app.get_formatter()->label("SUBCOMMAND", "VERB");
-  app.get_formatter()->label("Subcommands", "Verbs");
   app.require_subcommand(0, 1);
   app.footer(std::string("\npercale VERB --help tells what a verb takes, with examples.\n") + kExitCodes);
 

@@ -152,13 +152,17 @@ int Film(Studio& studio, World& world, const Options& options, const Session& se
   PrintDiagnostics(video.diagnostics());
   if (!video) return kFailed;
 
-  // Picture k shows the frame nearest to its time, so that the film plays in real time.
+  // Picture k shows the frame of its time, so that the film plays in real time. The state at the very
+  // end of a run of stated length would be the first picture of what comes after it.
   const double framesPerPicture = world.scene().simulation.framesPerSecond / options.framesPerSecond;
   double pictures = 0;
   int code = kDone;
-  const RunEnd end = Run(world, PlanRun(options, world.scene(), defaultFrames), options, session, [&] {
+  const RunPlan plan = PlanRun(options, world.scene(), defaultFrames);
+  const RunEnd end = Run(world, plan, options, session, [&] {
+    const int frame = world.report().frame;
+    if (frame > 0 && frame == plan.frames && !plan.untilRest) return int(kDone);
     std::optional<Image> image;
-    while (std::floor(pictures * framesPerPicture + 0.5) <= world.report().frame) {
+    while (std::floor(pictures * framesPerPicture + 1e-9) <= frame) {
       if (!image) image = Paint(studio, world);
       if (!image) return code = kInvalid;
       if (Status status = video->Add(*image); !status) {

@@ -77,6 +77,7 @@ class Session {
   const Snapshot& snapshot() const { return snapshot_; }  ///< The newest state.
   Messages& messages() { return messages_; }
   SessionLog& log() { return log_; }
+  bool logged() const { return log_.enabled(); }
   std::string Title() const;
   /// Problems of drawing the last picture, none if all went well.
   void ReportDrawing(const Status& drawn, const Diagnostics& warnings);

@@ -157,8 +157,8 @@ Result<Window> Window::Open(const WindowSettings& settings) {
     glfwMakeContextCurrent(*made);
   }
   GLFWwindow* const window = self.window_ = *made;
-  self.input_ = new Input;
-  glfwSetWindowUserPointer(window, self.input_);
+  self.input_ = std::make_unique<Input>();
+  glfwSetWindowUserPointer(window, self.input_.get());
   glfwSetKeyCallback(window, Callbacks::Key);
   glfwSetCharCallback(window, Callbacks::Character);
   glfwSetMouseButtonCallback(window, Callbacks::Button);
@@ -204,7 +204,6 @@ Window::~Window() {
   if (!window_) return;
   glfwDestroyWindow(window_);
   glfwTerminate();
-  delete input_;
 }
 
 void Window::Show() {
@@ -248,7 +247,7 @@ void Window::AdaptToScale() {
   contentScale_ = contentScale;
   scale_ = contentScale / pixelsPerUnit;
   ApplyStyle(scale_, contentScale, pixelsPerUnit);
-  ImGui_ImplOpenGL3_DestroyFontsTexture();  // Made again from the new fonts with the next picture.
+  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // Made again, from the new fonts, with the next picture.
 }
 
 void Window::BeginPanels() {

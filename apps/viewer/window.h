@@ -3,6 +3,7 @@
 /// The window: GLFW and Dear ImGui set up, and what the user did with keys and mouse.
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -86,7 +87,7 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   ImGuiContext* context_ = nullptr;
-  Input* input_ = nullptr;  // Of a stable address, for the callbacks; owned.
+  std::unique_ptr<Input> input_;  // Of a stable address, for the callbacks.
   int samples_ = 1;
   float scale_ = 0;         // Of the present fonts and style.
   float contentScale_ = 0;  // Of the display they were made for.
