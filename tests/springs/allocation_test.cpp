@@ -1,0 +1,135 @@
+// A warmed-up step does not allocate, whatever the cloth does meanwhile.
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "core/executor.h"
+#include "mesh/cloth_model.h"
+#include "springs/kernels.h"
+#include "springs/springs_engine.h"
+#include "tests/springs/scenes.h"
+
+namespace {
+
+std::atomic<bool> counting{false};
+std::atomic<int> allocations{0};
+
+void* Allocate(std::size_t size, std::size_t alignment) {
+  if (counting) ++allocations;
+  void* memory = nullptr;
+  if (alignment <= alignof(std::max_align_t)) {
+    memory = std::malloc(size > 0 ? size : 1);
+  } else {
+    memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  }
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+template <class Function>
+int CountAllocations(Function&& function) {
+  allocations = 0;
+  counting = true;
+  function();
+  counting = false;
+  return allocations;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return Allocate(size, 1);
+}
+void* operator new[](std::size_t size) {
+  return Allocate(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return Allocate(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return Allocate(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+using namespace percale;
+using namespace percale::test;
+
+TEST_CASE("the counter counts") {
+  std::vector<int>* kept = nullptr;
+  CHECK(CountAllocations([&] { kept = new std::vector<int>(100); }) == 2);
+  delete kept;
+}
+
+TEST_CASE("a warmed-up frame does not allocate") {
+  std::vector<Scene> scenes;
+  for (const char* name : kCourseScenes) scenes.push_back(CourseScene(name, 40));
+  for (const HashFunction hash : {HashFunction::Linear, HashFunction::Powers, HashFunction::Brute}) {
+    scenes.push_back(CourseScene("selfCollision", 20));
+    scenes.back().simulation.hash = hash;
+  }
+  scenes.push_back(CourseScene("pinned2", 30));
+  scenes.back().wind = {{1, 2, 3}, 1, 0.5, 1};
+  scenes.back().pinMotions.push_back({0, {}, 0, 1, {0.2, 0.2, 0}});
+  scenes.push_back(CourseScene("selfCollision", 30));
+  scenes.back().cloths.push_back(CourseScene("sphere", 20).cloths[0]);
+
+  for (std::size_t s = 0; s < scenes.size(); ++s) {
+    CAPTURE(s);
+    World world(scenes[s], {.threads = 1});
+    world.Step();
+    int contacts = 0;
+    CHECK(CountAllocations([&] {
+            for (int frame = 0; frame < Frames(90); ++frame) {
+              const StepReport& report = world.Step();
+              contacts += report.selfContacts + report.colliderContacts + report.limitedSprings > 0;
+            }
+          }) == 0);
+    if (!kSanitized) CHECK(contacts > 0);
+    CHECK(CountAllocations([&] { world.Reset(); }) == 0);
+  }
+}
+
+TEST_CASE("no stage of the engine allocates") {
+  const Scene scene = CourseScene("selfCollision", 40);
+  const std::vector<ClothModel> models{MakeGrid(scene.cloths[0])};
+  const Executor executor(1);
+  springs::SpringsEngine engine(scene, models, executor, springs::BaselineKernels());
+  CHECK(CountAllocations([&] {  // not even in the first step
+          for (int step = 1; step <= 900; ++step) {
+            engine.MoveColliders(step * scene.TimeStep());
+            engine.ApplyForces(step * scene.TimeStep());
+            engine.FindContacts();
+            engine.SelfCollide();
+            engine.Collide();
+            engine.LimitStrain();
+          }
+        }) == 0);
+  CHECK(engine.counts().selfContacts > 0);
+}

@@ -1,0 +1,51 @@
+// The same scene gives the same bits with any number of threads, optimisation and compiler. The
+// constants were computed once, with g++ and one thread; they change only when the rules do.
+
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "tests/springs/scenes.h"
+
+using namespace percale;
+using namespace percale::test;
+
+namespace {
+
+struct Golden {
+  const char* scene;
+  std::uint64_t hash;
+};
+constexpr Golden kGolden[] = {
+    {"pinned2", 0xf6c9dc154187bd76u}, {"pinned4", 0x727d127392f431f3u},       {"sphere", 0xe168559b17229e42u},
+    {"plane", 0x17aaca7cf76dcc66u},   {"selfCollision", 0x08477d22c80e742eu},
+};
+
+}  // namespace
+
+TEST_CASE("golden hash of every course scene after 100 frames, for 1, 2, 3 and 8 threads") {
+  static_assert(std::numeric_limits<double>::is_iec559);
+  for (const Golden& golden : kGolden) {
+    for (const int threads : {1, 2, 3, 8}) {
+      if (kSanitized && threads > 2) continue;
+      CAPTURE(std::string(golden.scene));
+      CAPTURE(threads);
+      World world(CourseScene(golden.scene), {.threads = threads});
+      Run(world, 100);
+      CHECK(world.StateHash() == golden.hash);
+    }
+  }
+}
+
+TEST_CASE("a scene of 150 x 150 points gives the same bits with any number of threads") {
+  World one(CourseScene("selfCollision", 150), {.threads = 1});
+  Run(one, Frames(12));
+  for (const int threads : {2, 3, 8}) {
+    CAPTURE(threads);
+    World many(CourseScene("selfCollision", 150), {.threads = threads});
+    Run(many, Frames(12));
+    CHECK(many.StateHash() == one.StateHash());
+  }
+}
