@@ -102,16 +102,18 @@ void JsonDocument::IndexLines() {
 }
 
 Diagnostic JsonDocument::Message(std::size_t offset, Severity severity, std::string message) const {
-  constexpr int kBefore = 60, kAfter = 40;  // characters of a long line that are shown
+  // Of a long line this many characters are shown, so many of them before the place.
+  constexpr int kShown = 110, kBefore = 60;
   Diagnostic diagnostic{severity, At(offset), std::move(message), {}, 0};
   const std::size_t line = lineBegins_[static_cast<std::size_t>(diagnostic.place.line - 1)];
   std::size_t begin = offset, end = offset;
   int before = 0;
-  while (begin > line && before < kBefore) {
+  const int mostBefore = diagnostic.place.column <= kShown - 10 ? kShown : kBefore;
+  while (begin > line && before < mostBefore) {
     if (!IsContinuation(text_[--begin])) ++before;
   }
-  for (int after = 0; end < text_.size() && text_[end] != '\n'; ++end) {
-    if (!IsContinuation(text_[end]) && ++after > kAfter) break;
+  for (int shown = before; end < text_.size() && text_[end] != '\n'; ++end) {
+    if (!IsContinuation(text_[end]) && ++shown > kShown) break;
   }
   const bool cutEnd = end < text_.size() && text_[end] != '\n';
   if (!cutEnd && end > begin && text_[end - 1] == '\r') --end;

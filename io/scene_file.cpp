@@ -94,7 +94,6 @@ class SceneReader {
   /// `path` is how the file reads, `canonical` how it would with every group in an array.
   void ReadObject(const ParameterGroup& group, std::size_t index, JsonIndex object, const std::string& path,
                   const std::string& canonical) {
-    const std::size_t before = diagnostics_.size();
     if (document_.Kind(object) != JsonKind::Object) {
       Error(object, path + ": expected an object, got " + document_.Source(object));
       failed_.insert(canonical);
@@ -107,14 +106,16 @@ class SceneReader {
       const Parameter* parameter = FindParameter(group.name, key);
       if (!parameter) {
         ReportUnknown(member, path, group.name);
+        failed_.insert(canonical + "/" + key);
         continue;
       }
       stated.insert(parameter->name);
       const std::string valuePath = path + "/" + key;
       const std::optional<Value> value = Convert(*parameter, member, valuePath);
-      if (!value) continue;
-      if (const auto problem = CheckValue(*parameter, *value)) {
-        Error(member, valuePath + ": " + *problem);
+      const std::optional<std::string> problem = value ? CheckValue(*parameter, *value) : std::nullopt;
+      if (problem) Error(member, valuePath + ": " + *problem);
+      if (!value || problem) {
+        failed_.insert(canonical + "/" + key);
         continue;
       }
       parameter->set(scene_, index, *value);
@@ -122,12 +123,12 @@ class SceneReader {
     }
     for (const Parameter& parameter : Parameters()) {
       if (parameter.group != group.name || !parameter.required || stated.count(parameter.name) > 0) continue;
+      failed_.insert(canonical + "/" + std::string(parameter.name));
       Error(object, path + "/" + std::string(parameter.name) + ": this key is missing; expected " +
                         DescribeExpected(parameter) + ", such as " + FormatValue(DefaultValue(parameter)));
     }
     // Who places the camera by hand does not want it placed automatically, unless they say so.
     if (group.name == "camera" && !stated.empty() && stated.count("automatic") == 0) scene_.camera.automatic = false;
-    if (diagnostics_.size() > before) failed_.insert(canonical);
   }
 
   /// The value of the parameter's kind, not yet checked against its range; reports what is none.
@@ -217,7 +218,7 @@ class SceneReader {
     for (const Parameter& parameter : Parameters()) {
       if (parameter.group == group) known.push_back(parameter.name);
       if (parameter.name == key) {
-        owners += (owners.empty() ? "; it belongs into `" : " or `") + std::string(parameter.group) + "`";
+        owners += (owners.empty() ? "; it belongs in `" : " or `") + std::string(parameter.group) + "`";
       }
     }
     std::string hint = owners.empty() ? DidYouMean(key, known) : owners;
@@ -233,26 +234,36 @@ class SceneReader {
 
   /// What concerns several values at once, at the place of the value that it names.
   void CheckWhole() {
-    const bool clothFailed = Failed("/cloth", true);
     for (Diagnostic& found : CheckScene(scene_)) {
       const std::size_t colon = found.message.find(": ");
-      const std::vector<std::string_view> parts = SplitPath(std::string_view(found.message).substr(0, colon));
-      const std::string object = "/" + std::string(parts[0]) +
-                                 (FindGroup(parts[0])->isArray && parts.size() > 1 ? "/" + std::string(parts[1]) : "");
-      // A value that could not be read stands at its default, which is nothing to complain about.
-      if (Failed(object, false) || Failed("/" + std::string(parts[0]), false)) continue;
-      if (parts[0] == "pin_motion" && clothFailed) continue;
-      if (found.severity == Severity::Warning && Failed("/simulation", false)) continue;
+      const std::string canonical = found.message.substr(0, colon);
+      const std::vector<std::string_view> parts = SplitPath(canonical);
+      if (FollowsFromFailure(canonical, parts, found.severity)) continue;
       auto [value, path] = Locate(parts);
       diagnostics_.push_back(document_.About(value, found.severity, path + found.message.substr(colon)));
     }
   }
 
-  /// Whether reading that object failed; with `orPart`, or any below it.
-  bool Failed(const std::string& object, bool orPart) const {
-    if (!orPart) return failed_.count(object) > 0;
-    const auto next = failed_.lower_bound(object);
-    return next != failed_.end() && next->compare(0, object.size(), object) == 0;
+  /// Whether the scene only has that problem because a value that could not be read stands at its
+  /// default.
+  bool FollowsFromFailure(const std::string& path, const std::vector<std::string_view>& parts,
+                          Severity severity) const {
+    const std::string group = "/" + std::string(parts[0]);
+    const std::string object =
+        FindGroup(parts[0])->isArray && parts.size() > 1 ? group + "/" + std::string(parts[1]) : group;
+    if (failed_.count(group) > 0 || failed_.count(path) > 0) return true;
+    if (severity != Severity::Error) return FailedBelow(object) || FailedBelow("/simulation");
+    if (group == "/pin_motion") return FailedBelow(object) || FailedBelow("/cloth");
+    if (group != "/cloth") return false;
+    for (const char* name : {"/width", "/height", "/num_width_points", "/num_height_points", "/pinned"}) {
+      if (failed_.count(object + name) > 0) return true;
+    }
+    return failed_.count(object) > 0;
+  }
+  bool FailedBelow(const std::string& object) const {
+    const auto next = failed_.lower_bound(object + "/");
+    return failed_.count(object) > 0 ||
+           (next != failed_.end() && next->compare(0, object.size() + 1, object + "/") == 0);
   }
 
   /// The value with that canonical path, or the nearest above it that the file states; and the path
@@ -300,7 +311,7 @@ class SceneReader {
   const JsonDocument& document_;
   Origins* origins_;
   Scene scene_;
-  std::set<std::string> failed_;  ///< Canonical paths of the objects with an error.
+  std::set<std::string> failed_;  ///< Canonical paths of values that are missing, unknown or wrong.
   Diagnostics diagnostics_;
 };
 
