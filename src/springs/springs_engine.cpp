@@ -454,25 +454,27 @@ void SpringsEngine::ReadState(int cloth, std::span<Vec3> positions, std::span<Ve
   }
 }
 
-double SpringsEngine::GreatestStretch() const {
-  double greatest = 0;
-  for (const Sheet& sheet : sheets_) {
+Stretch SpringsEngine::GreatestStretch() const {
+  Stretch greatest;  // its ratio squared, until the end
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    const Sheet& sheet = sheets_[s];
     for (int kind = 0; kind < kSpringKinds; ++kind) {
-      const int step = kSpringSteps[kind].dj * sheet.numWidth + kSpringSteps[kind].di;
       for (int v = 0; v < sheet.PointCount(); ++v) {
         if (!(sheet.kinds[Index(v)] & 1u << kind)) continue;
-        const std::size_t p = Index(sheet.firstPoint + v), q = Index(sheet.firstPoint + v + step);
+        const std::size_t p = Index(sheet.firstPoint + v), q = Index(sheet.firstPoint + v + sheet.step[kind]);
         const Vec3 d{positions_[0][q] - positions_[0][p], positions_[1][q] - positions_[1][p],
                      positions_[2][q] - positions_[2][p]};
         const double rest = sheet.rest[kind][Index(v)];
-        greatest = std::max(greatest, Dot(d, d) / (rest * rest));
+        const double ratio = Dot(d, d) / (rest * rest);
+        if (ratio > greatest.ratio) greatest = {ratio, {static_cast<int>(s), v}};
       }
     }
   }
-  return std::sqrt(greatest);
+  greatest.ratio = std::sqrt(greatest.ratio);
+  return greatest;
 }
 
-SpringsEngine::Location SpringsEngine::FindOutOfBounds() const {
+VertexRef SpringsEngine::FindOutOfBounds() const {
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     for (int v = 0; v < sheets_[s].PointCount(); ++v) {
       for (const double* axis : positions_) {
@@ -480,7 +482,7 @@ SpringsEngine::Location SpringsEngine::FindOutOfBounds() const {
       }
     }
   }
-  return {-1, -1};
+  return {};
 }
 
 }  // namespace percale::springs

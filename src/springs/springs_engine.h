@@ -13,11 +13,13 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "collide/box_map.h"
 #include "core/executor.h"
 #include "mesh/cloth_model.h"
+#include "mesh/engine_types.h"
 #include "percale/scene.h"
 #include "springs/kernels.h"
 
@@ -47,11 +49,6 @@ struct Sheet {
   int PointCount() const { return numWidth * numHeight; }
 };
 
-/// What a number of steps did, for the report.
-struct Counts {
-  std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
-};
-
 class SpringsEngine {
  public:
   /// `models` are those of scene.cloths. `executor` must outlive the engine.
@@ -74,19 +71,16 @@ class SpringsEngine {
   void LimitStrain();
 
   int PointCount() const { return pointCount_; }
-  const Counts& counts() const { return counts_; }
-  void ClearCounts() { counts_ = {}; }
+  /// What was done since the last call.
+  EngineCounts TakeCounts() { return std::exchange(counts_, {}); }
 
   /// Copies a cloth's positions and those of one step ago [m]. Spans of the cloth's point count.
   void ReadState(int cloth, std::span<Vec3> positions, std::span<Vec3> previous) const;
-  /// Greatest length over rest length of all springs, whatever kinds are enabled.
-  double GreatestStretch() const;
+  /// The longest of all springs, whatever kinds are enabled.
+  Stretch GreatestStretch() const;
   double Mass(int cloth) const { return sheets_[static_cast<std::size_t>(cloth)].mass; }
-  /// First point with a coordinate out of bounds: its cloth and vertex; {-1, -1} if there is none.
-  struct Location {
-    int cloth, vertex;
-  };
-  Location FindOutOfBounds() const;
+  /// The first point with a coordinate out of bounds.
+  VertexRef FindOutOfBounds() const;
   /// Buckets of the spatial map at the last step.
   const BoxMap& map() const { return map_; }
 
@@ -137,7 +131,7 @@ class SpringsEngine {
   std::vector<std::int64_t> chunkCounts_;      // per chunk of any loop
   std::vector<std::int32_t> bucketChunkEnds_;  // last bucket of each chunk of SelfCollide
   std::vector<double> bucketScratch_;          // per point, padded
-  Counts counts_;
+  EngineCounts counts_;
 };
 
 }  // namespace percale::springs

@@ -32,15 +32,8 @@ constexpr EngineTable kSprings = {
                     std::span<Vec3> previous) { Self(e).ReadState(cloth, positions, previous); },
     .greatestStretch = [](const void* e) { return Self(e).GreatestStretch(); },
     .mass = [](const void* e, int cloth) { return Self(e).Mass(cloth); },
-    .findOutOfBounds = [](const void* e) -> VertexRef {
-      const SpringsEngine::Location at = Self(e).FindOutOfBounds();
-      return {at.cloth, at.vertex};
-    },
-    .takeCounts = [](void* e) -> EngineCounts {
-      const springs::Counts counts = Self(e).counts();
-      Self(e).ClearCounts();
-      return {counts.selfContacts, counts.colliderContacts, counts.limitedSprings};
-    },
+    .findOutOfBounds = [](const void* e) { return Self(e).FindOutOfBounds(); },
+    .takeCounts = [](void* e) { return Self(e).TakeCounts(); },
 };
 
 }  // namespace

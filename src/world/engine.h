@@ -9,19 +9,10 @@
 
 #include "core/executor.h"
 #include "mesh/cloth_model.h"
+#include "mesh/engine_types.h"
 #include "percale/scene.h"
 
 namespace percale {
-
-/// What an engine did since the counts were last cleared.
-struct EngineCounts {
-  std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
-};
-
-/// A vertex of a cloth; cloth -1: none.
-struct VertexRef {
-  int cloth = -1, vertex = -1;
-};
 
 struct EngineTable {
   std::string_view name;
@@ -39,7 +30,7 @@ struct EngineTable {
 
   // What a frame leaves behind.
   void (*readState)(const void*, int cloth, std::span<Vec3> positions, std::span<Vec3> previous);
-  double (*greatestStretch)(const void*);
+  Stretch (*greatestStretch)(const void*);
   double (*mass)(const void*, int cloth);  ///< Of one point [kg].
   VertexRef (*findOutOfBounds)(const void*);
   EngineCounts (*takeCounts)(void*);  ///< Since the last call.

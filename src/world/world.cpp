@@ -19,6 +19,8 @@ namespace {
 // A cloth is at rest when no point moves more than this over a frame, for so many frames on end.
 constexpr double kRestMove = 1e-3;  // m
 constexpr int kRestFrames = 30;
+// No cloth that anybody wants is stretched that much: the state is on its way to infinity.
+constexpr double kDivergedStretch = 1000;
 
 /// Adds wall-clock time to the stages of a report.
 class StageClock {
@@ -122,7 +124,6 @@ void World::Impl::FinishStep() {
     report.kineticEnergy += 0.5 * engine->mass(engineState.get(), static_cast<int>(c)) * squaredSpeeds;
   }
   report.greatestMove = std::sqrt(move);
-  report.greatestStretch = engine->greatestStretch(engineState.get());
   const EngineCounts counts = engine->takeCounts(engineState.get());
   report.selfContacts = counts.selfContacts;
   report.colliderContacts = counts.colliderContacts;
@@ -166,13 +167,16 @@ const StepReport& World::Step() {
     clock.Finished(Stage::LimitStrain);
   }
 
-  const VertexRef lost = engine.findOutOfBounds(state);
+  VertexRef lost = engine.findOutOfBounds(state);
+  const Stretch stretch = engine.greatestStretch(state);
+  if (lost.cloth < 0 && stretch.ratio > kDivergedStretch) lost = stretch.at;
   if (lost.cloth >= 0) {
     // The reader keeps the state of the last good frame.
     report.divergence = ExplainDivergence(w.scene, report.step, lost.cloth, lost.vertex);
     engine.takeCounts(state);
   } else {
     ++report.frame;
+    report.greatestStretch = stretch.ratio;
     w.FinishStep();
   }
   clock.Finished(Stage::FinishStep);

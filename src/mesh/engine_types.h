@@ -1,0 +1,25 @@
+#pragma once
+/// \file
+/// What every engine tells World about the state of its cloths.
+
+#include <cstdint>
+
+namespace percale {
+
+/// A vertex of a cloth; cloth -1: none.
+struct VertexRef {
+  int cloth = -1, vertex = -1;
+};
+
+/// The longest spring or edge, measured against its rest length.
+struct Stretch {
+  double ratio = 0;  ///< Length over rest length.
+  VertexRef at;      ///< One of its ends.
+};
+
+/// What an engine did since its counts were last taken.
+struct EngineCounts {
+  std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
+};
+
+}  // namespace percale
