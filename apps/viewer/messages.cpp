@@ -26,9 +26,9 @@ void Messages::Set(const std::string& source, const Diagnostics& diagnostics, bo
     if (message.source == source && !message.over && !remains(message)) message.over = true;
   }
   if (replace) {
-    list_.erase(std::remove_if(list_.begin(), list_.end(),
-                               [&](const Message& m) { return m.source == source && m.over; }),
-                list_.end());
+    list_.erase(
+        std::remove_if(list_.begin(), list_.end(), [&](const Message& m) { return m.source == source && m.over; }),
+        list_.end());
   }
   for (const Diagnostic& diagnostic : diagnostics) {
     const bool known = std::any_of(list_.begin(), list_.end(), [&](const Message& m) {
@@ -38,8 +38,8 @@ void Messages::Set(const std::string& source, const Diagnostics& diagnostics, bo
   }
   if (held && diagnostics.empty() && listener_) listener_(source, nullptr);
 
-  std::size_t over = static_cast<std::size_t>(
-      std::count_if(list_.begin(), list_.end(), [](const Message& m) { return m.over; }));
+  std::size_t over =
+      static_cast<std::size_t>(std::count_if(list_.begin(), list_.end(), [](const Message& m) { return m.over; }));
   for (auto m = list_.begin(); over > kMostOver && m != list_.end();) {
     if (!m->over) {
       ++m;

@@ -104,7 +104,7 @@ class Session {
   std::filesystem::path browsed_;  // Where CycleScene stands, which may be a file that could not be read.
   FileWatch sceneWatch_;
   View view_;
-  bool cameraMoved_ = false;    // By the user.
+  bool cameraMoved_ = false;  // By the user.
   bool cameraUnlogged_ = false;
   Snapshot snapshot_;
   Simulation simulation_;

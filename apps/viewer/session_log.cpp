@@ -65,8 +65,7 @@ SessionLog& SessionLog::operator=(SessionLog&& other) noexcept {
 void SessionLog::Write(const LogLine& line) {
   if (!file_) return;
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start_;
-  const std::string text =
-      "{\"t\":" + FormatNumber(std::round(time.count() * 1e6) / 1e6) + line.text() + "}\n";
+  const std::string text = "{\"t\":" + FormatNumber(std::round(time.count() * 1e6) / 1e6) + line.text() + "}\n";
   if (std::fwrite(text.data(), 1, text.size(), file_) == text.size() && std::fflush(file_) == 0) return;
   std::fprintf(stderr, "percale: warning: the session log cannot be written any more: %s\n", std::strerror(errno));
   std::fclose(std::exchange(file_, nullptr));

@@ -32,8 +32,8 @@
 ///   exit     code: the last line
 /// Hashes are 16 hexadecimal digits. Numbers of commands count from 1 (see simulation.h).
 
-#include <cstdint>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string>

@@ -78,8 +78,8 @@ std::uint64_t Simulation::Send(Command command) {
   {
     const std::lock_guard lock(mutex_);
     number = command.number = ++lastNumber_;
-    const bool replaces = command.kind == Command::Kind::Apply && !commands_.empty() &&
-                          commands_.back().kind == Command::Kind::Apply;
+    const bool replaces =
+        command.kind == Command::Kind::Apply && !commands_.empty() && commands_.back().kind == Command::Kind::Apply;
     if (replaces)
       commands_.back() = std::move(command);
     else

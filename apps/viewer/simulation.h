@@ -44,9 +44,9 @@ struct Snapshot {
   std::vector<ClothCopy> cloths;  ///< In the scene's order.
   StepReport report;
   bool running = false;
-  double frameSeconds = 0;      ///< Wall-clock time of the last frame [s]; 0 before the first.
-  double framesPerSecond = 0;   ///< Simulated in the last half second of running; 0 while paused.
-  std::uint64_t hash = 0;       ///< World::StateHash; 0 unless hashes were asked for.
+  double frameSeconds = 0;         ///< Wall-clock time of the last frame [s]; 0 before the first.
+  double framesPerSecond = 0;      ///< Simulated in the last half second of running; 0 while paused.
+  std::uint64_t hash = 0;          ///< World::StateHash; 0 unless hashes were asked for.
   std::vector<Executed> executed;  ///< Since the last snapshot that was taken, in order.
 };
 

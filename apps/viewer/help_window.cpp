@@ -1,0 +1,44 @@
+#include <imgui.h>
+
+#include <string>
+
+#include "apps/viewer/actions.h"
+#include "apps/viewer/panels.h"
+#include "apps/viewer/session.h"
+#include "apps/viewer/ui_state.h"
+#include "apps/viewer/widgets.h"
+
+namespace percale::viewer {
+namespace {
+
+void Row(std::string_view key, std::string_view help) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "%s", std::string(key).c_str());
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(help.data(), help.data() + help.size());
+}
+
+}  // namespace
+
+void DrawHelp(const Session& session, UiState& state, float width, float height) {
+  if (!state.helpVisible) return;
+  ImGui::SetNextWindowPos({width / 2, height / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
+                                      ImGuiWindowFlags_NoNav;
+  if (ImGui::Begin("Keys and mouse", &state.helpVisible, kFlags)) {
+    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_PadOuterX)) {
+      for (const Action& action : Actions()) Row(action.key, action.help);
+      for (const MouseHelp& mouse : MouseGestures()) Row(mouse.gesture, mouse.help);
+      ImGui::EndTable();
+    }
+    ImGui::Separator();
+    ImGui::TextDisabled("Click a number to type one; point at a name to read what it means.");
+    ImGui::TextDisabled("Scene and shader files are read again whenever they are saved.");
+  }
+  ImGui::End();
+  NoteBox(session, state, "help");
+}
+
+}  // namespace percale::viewer

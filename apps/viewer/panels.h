@@ -1,0 +1,44 @@
+#pragma once
+/// \file
+/// The panels, each in a file of its own, and the column that holds them.
+
+#include <span>
+
+namespace percale::viewer {
+
+class Session;
+struct UiState;
+
+struct Panel {
+  const char* title;
+  bool openAtStart;
+  void (*draw)(Session&, UiState&);
+  bool (*hasContent)(const Session&) = nullptr;  ///< Null: always.
+};
+
+/// From top to bottom: the course's in its order, then Percale's own.
+std::span<const Panel> Panels();
+
+void DrawSpringsPanel(Session& session, UiState& state);
+void DrawParametersPanel(Session& session, UiState& state);
+void DrawSimulationPanel(Session& session, UiState& state);
+void DrawDampingPanel(Session& session, UiState& state);
+void DrawGravityPanel(Session& session, UiState& state);
+void DrawAppearancePanel(Session& session, UiState& state);
+void DrawCollisionsPanel(Session& session, UiState& state);
+void DrawCollidersPanel(Session& session, UiState& state);
+void DrawWindPanel(Session& session, UiState& state);
+void DrawStatisticsPanel(Session& session, UiState& state);
+
+/// Width of the column at the right that holds the panels [screen unit].
+float PanelColumnWidth(const UiState& state);
+/// The column, for a window of that size [screen unit].
+void DrawPanelColumn(Session& session, UiState& state, float width, float height);
+/// What is wrong, at the lower edge of the picture; nothing when nothing is.
+void DrawMessages(Session& session, UiState& state, float pictureWidth, float height);
+/// One line in the upper left corner of the picture: paused or running, and which key helps.
+void DrawStatusLine(const Session& session, const UiState& state);
+/// Keys and mouse.
+void DrawHelp(const Session& session, UiState& state, float width, float height);
+
+}  // namespace percale::viewer

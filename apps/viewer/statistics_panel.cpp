@@ -1,0 +1,58 @@
+#include <imgui.h>
+
+#include <cstdarg>
+#include <cstdio>
+#include <string>
+
+#include "apps/viewer/panels.h"
+#include "apps/viewer/widgets.h"
+
+namespace percale::viewer {
+namespace {
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 1, 2)))
+#endif
+std::string
+Text(const char* format, ...) {
+  char text[120];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+}  // namespace
+
+void DrawStatisticsPanel(Session& session, UiState& state) {
+  const Snapshot& snapshot = session.snapshot();
+  const StepReport& report = snapshot.report;
+  std::size_t points = 0, springs = 0;
+  for (const ClothCopy& cloth : snapshot.cloths) {
+    points += cloth.positions.size();
+    springs += cloth.topology->springs.size();
+  }
+  FactRow(state, "Frame", Text("%d   (%.2f s)", report.frame, report.time));
+  FactRow(state, "Cloth", Text("%zu points, %zu springs", points, springs));
+  if (report.frame > 0) {
+    FactRow(state, "Greatest stretch", Text("%.4f", report.greatestStretch));
+    FactRow(state, "Kinetic energy", Text("%.4g J", report.kineticEnergy));
+    FactRow(state, "At rest", report.atRest ? "yes" : Text("no, moves %.3g mm per frame", report.greatestMove * 1000));
+    FactRow(state, "Contacts",
+            Text("%lld cloth, %lld colliders", static_cast<long long>(report.selfContacts),
+                 static_cast<long long>(report.colliderContacts)));
+  }
+  FactRow(state, "Drawing", Text("%.1f ms", state.drawSeconds * 1000));
+  if (snapshot.framesPerSecond > 0) FactRow(state, "Speed", Text("%.0f frames/s", snapshot.framesPerSecond));
+  const bool open = ImGui::TreeNode("##stages", "A frame of simulation: %.2f ms", state.frameSeconds * 1000);
+  NoteBox(session, state, "statistics stages");
+  if (!open) return;
+  for (int stage = 0; stage < kStageCount; ++stage) {
+    const std::string name(StageName(static_cast<Stage>(stage)));
+    FactRow(state, name.c_str(), Text("%6.3f ms", state.stageSeconds[static_cast<std::size_t>(stage)] * 1000));
+  }
+  ImGui::TreePop();
+}
+
+}  // namespace percale::viewer

@@ -1,0 +1,307 @@
+#include "apps/viewer/viewer.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/viewer/actions.h"
+#include "apps/viewer/panels.h"
+#include "apps/viewer/session.h"
+#include "apps/viewer/session_log.h"
+#include "apps/viewer/ui_state.h"
+#include "apps/viewer/window.h"
+#include "io/atomic_file.h"
+#include "percale/parameters.h"
+#include "render/gl_device.h"
+
+namespace percale {
+namespace viewer {
+namespace {
+
+constexpr int kExitFailed = 1, kExitBadInput = 3, kExitNoGraphics = 5, kExitInterrupted = 130;
+/// Pictures are drawn no more often than this, where the display does not hold them back itself [1/s].
+constexpr double kMostPictures = 120;
+/// After the last sign of life pictures are drawn for so long, then only when there is something new [s].
+constexpr double kActiveTime = 0.5;
+/// How long to sleep at most when nothing happens: files are to be looked at [s].
+constexpr double kSleep = 0.05;
+/// Share of a new value in the smoothed times.
+constexpr double kSmoothing = 0.1;
+
+volatile std::sig_atomic_t interrupted = 0;
+extern "C" void OnInterrupt(int) {
+  interrupted = 1;
+}
+
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Turns what the user does in the picture into changes of the camera.
+class Hand {
+ public:
+  /// `inPicture`: the pointer is over the picture, not over a panel.
+  void Take(const InputEvent& event, bool inPicture, int width, int height, Session& session) {
+    switch (event.kind) {
+      case InputEvent::Kind::Press:
+        if (!inPicture || grip_) return;
+        grip_ = event.button;
+        pans_ = event.button == InputEvent::Button::Right || event.control;
+        x_ = event.x;
+        y_ = event.y;
+        return;
+      case InputEvent::Kind::Release:
+        if (grip_ == event.button) grip_.reset();
+        return;
+      case InputEvent::Kind::Move:
+        if (!grip_ || (event.x == x_ && event.y == y_)) return;
+        if (pans_)
+          session.Pan(event.x - x_, event.y - y_, width, height);
+        else
+          session.Orbit(event.x - x_, event.y - y_, width, height);
+        x_ = event.x;
+        y_ = event.y;
+        return;
+      case InputEvent::Kind::Wheel:
+        if (inPicture && event.steps != 0) session.Dolly(event.steps);
+        return;
+      default:
+        return;
+    }
+  }
+
+ private:
+  std::optional<InputEvent::Button> grip_;
+  bool pans_ = false;
+  double x_ = 0, y_ = 0;
+};
+
+/// The window with all that is in it.
+class Viewer {
+ public:
+  Viewer(const ViewerOptions& options, Window& window, GlDevice& device, SessionLog log)
+      : window_(window), device_(device), session_(options, device.shaders(), std::move(log), &Window::Wake) {}
+
+  void LogStart(const ViewerOptions& options) {
+    if (!session_.logged()) return;
+    const GraphicsInfo graphics = DescribeGraphics();
+    window_.Size(width_, height_);
+    state_.scale = window_.scale();
+    session_.log().Write(LogLine("start")
+                             .Text("scene", PathText(options.sceneFile))
+                             .Text("shader", session_.view().look.shader)
+                             .Text("root", PathText(options.root))
+                             .Number("width", width_)
+                             .Number("height", height_)
+                             .Number("samples", window_.samples())
+                             .Text("renderer", graphics.renderer)
+                             .Flag("software", graphics.software)
+                             .Number("frame", session_.snapshot().report.frame)
+                             .Hash("hash", session_.snapshot().hash));
+  }
+
+  int Run() {
+    window_.Show();
+    double activeUntil = 0, nextPicture = 0;
+    while (!window_.ShouldClose() && !state_.quit && !interrupted) {
+      double now = Now();
+      window_.WaitForEvents(now < activeUntil ? nextPicture - now : kSleep);
+      now = Now();
+      const bool news = session_.Update(now);
+      if (window_.TakeActivity() || news) activeUntil = now + kActiveTime;
+      if (now >= activeUntil && !typing_) continue;
+      if (now < nextPicture) continue;
+      nextPicture = now + 1 / kMostPictures;
+      if (window_.Minimized()) {
+        HandleKeys(window_.TakeEvents());
+        nextPicture = now + kSleep;
+        continue;
+      }
+      DrawPicture();
+    }
+    // A large cloth may need a while to finish its frame: the window need not stay for that.
+    window_.Hide();
+    const int code = interrupted ? kExitInterrupted : 0;
+    session_.log().Write(LogLine("exit").Number("code", code));
+    return code;
+  }
+
+ private:
+  void HandleKeys(const std::vector<InputEvent>& events) {
+    const bool typing = ImGui::GetIO().WantTextInput;
+    for (const InputEvent& event : events) {
+      if (event.kind == InputEvent::Kind::Drop) session_.OpenScene(event.file);
+      const bool isKey = event.kind == InputEvent::Kind::Character || event.kind == InputEvent::Kind::Special;
+      if (isKey && !typing) RunAction(event.character, event.special, event.repeated, session_, state_);
+    }
+  }
+
+  /// The part of the window that shows the picture: all but the panels [screen unit].
+  int PictureWidth() const {
+    if (!state_.panelsVisible) return width_;
+    return std::max(width_ - static_cast<int>(PanelColumnWidth(state_)), 1);
+  }
+
+  void DrawPicture() {
+    const double begin = Now();
+    int width = 0, height = 0;
+    window_.Size(width, height);
+    if (width < 1 || height < 1) return;
+    if (width != width_ || height != height_ || state_.scale != window_.scale()) {
+      width_ = width;
+      height_ = height;
+      state_.scale = window_.scale();
+      session_.log().Write(LogLine("window")
+                               .Number("width", width)
+                               .Number("height", height)
+                               .Number("scale", static_cast<double>(state_.scale)));
+    }
+    SmoothTimes();
+
+    // ImGui learns first where the pointer is, then whose the clicks are can be told.
+    window_.BeginPanels();
+    const std::vector<InputEvent> events = window_.TakeEvents();
+    for (const InputEvent& event : events)
+      hand_.Take(event, !ImGui::GetIO().WantCaptureMouse, PictureWidth(), height_, session_);
+    HandleKeys(events);
+    state_.boxes.clear();
+    DrawPanels();
+    // What the keys and panels have just changed shows at once.
+    session_.Update(Now());
+    DrawScene();
+    window_.EndPanels();
+    window_.SetTitle(session_.Title());
+    LogBoxes();
+    state_.drawSeconds += kSmoothing * (Now() - begin - state_.drawSeconds);
+    window_.Present();
+    session_.CountPicture();
+    typing_ = ImGui::GetIO().WantTextInput;
+  }
+
+  void DrawPanels() {
+    const float width = static_cast<float>(width_), height = static_cast<float>(height_);
+    if (state_.panelsVisible) {
+      DrawStatusLine(session_, state_);
+      DrawPanelColumn(session_, state_, width, height);
+      DrawMessages(session_, state_, static_cast<float>(PictureWidth()), height);
+    }
+    DrawHelp(session_, state_, width, height);
+  }
+
+  void DrawScene() {
+    int pixels = 0, rows = 0;
+    window_.FramebufferSize(pixels, rows);
+    const int columns = std::max(1, static_cast<int>(static_cast<double>(pixels) * PictureWidth() / width_));
+    rows = std::max(rows, 1);
+    const Snapshot& snapshot = session_.snapshot();
+    shapes_.clear();
+    for (const ClothCopy& cloth : snapshot.cloths) {
+      shapes_.push_back({cloth.positions, cloth.topology->uv, cloth.topology->triangles, cloth.topology->springs});
+    }
+    const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows);
+    const Status drawn = device_.Draw(list, columns, rows);
+    session_.ReportDrawing(drawn, device_.TakeWarnings());
+  }
+
+  void SmoothTimes() {
+    const Snapshot& snapshot = session_.snapshot();
+    if (snapshot.report.step == smoothedStep_) return;
+    // The first frame counts as it is.
+    const double share = state_.frameSeconds == 0 || snapshot.report.step < smoothedStep_ ? 1 : kSmoothing;
+    smoothedStep_ = snapshot.report.step;
+    state_.frameSeconds += share * (snapshot.frameSeconds - state_.frameSeconds);
+    for (std::size_t i = 0; i < state_.stageSeconds.size(); ++i)
+      state_.stageSeconds[i] += share * (snapshot.report.stageSeconds[i] - state_.stageSeconds[i]);
+  }
+
+  void LogBoxes() {
+    if (!session_.logged()) return;
+    const auto write = [&](const std::string& name, const Box& box) {
+      session_.log().Write(LogLine("widget")
+                               .Text("name", name)
+                               .Number("x", static_cast<double>(box.x))
+                               .Number("y", static_cast<double>(box.y))
+                               .Number("width", static_cast<double>(box.width))
+                               .Number("height", static_cast<double>(box.height)));
+    };
+    for (const auto& [name, box] : state_.boxes) {
+      const auto old = loggedBoxes_.find(name);
+      if (old == loggedBoxes_.end() || !(old->second == box)) write(name, box);
+    }
+    for (const auto& [name, box] : loggedBoxes_) {
+      if (state_.boxes.find(name) == state_.boxes.end()) write(name, {});
+    }
+    loggedBoxes_ = state_.boxes;
+  }
+
+  Window& window_;
+  GlDevice& device_;
+  Session session_;
+  UiState state_;
+  Hand hand_;
+  SceneView sceneView_;
+  std::vector<ClothShape> shapes_;
+  std::map<std::string, Box> loggedBoxes_;
+  int width_ = 0, height_ = 0;  // Of the window [screen unit].
+  std::int64_t smoothedStep_ = 0;
+  bool typing_ = false;
+};
+
+int Fail(const Diagnostics& diagnostics, int code) {
+  std::fputs(Format(diagnostics).c_str(), stderr);
+  return code;
+}
+
+/// Ctrl+C in the terminal ends the loop, while this lives.
+class InterruptHandler {
+ public:
+  InterruptHandler() : interrupt_(std::signal(SIGINT, OnInterrupt)), terminate_(std::signal(SIGTERM, OnInterrupt)) {
+    interrupted = 0;
+  }
+  ~InterruptHandler() {
+    std::signal(SIGINT, interrupt_);
+    std::signal(SIGTERM, terminate_);
+  }
+
+ private:
+  void (*interrupt_)(int);
+  void (*terminate_)(int);
+};
+
+}  // namespace
+}  // namespace viewer
+
+int RunViewer(const ViewerOptions& options) {
+  using namespace viewer;
+  if (const Diagnostics problems = CheckScene(options.scene); HasErrors(problems)) return Fail(problems, kExitBadInput);
+  if (ListShaders(options.root / "shaders").empty()) {
+    return Fail({MakeError(PathText(options.root / "shaders"),
+                           "expected shaders (*.frag) in this folder, found none; name the project's folder with -r")},
+                kExitBadInput);
+  }
+  SessionLog log;
+  if (!options.log.empty()) {
+    Result<SessionLog> opened = SessionLog::Open(options.log);
+    if (!opened) return Fail(opened.diagnostics(), kExitFailed);
+    log = std::move(*opened);
+  }
+  Result<Window> window = Window::Open({options.width, options.height, options.samples, "Percale"});
+  if (!window) return Fail(window.diagnostics(), kExitNoGraphics);
+  Result<GlDevice> device = GlDevice::Create(options.root);
+  if (!device) return Fail(device.diagnostics(), kExitNoGraphics);
+  const InterruptHandler handler;
+  Viewer viewer(options, *window, *device, std::move(log));
+  viewer.LogStart(options);
+  return viewer.Run();
+}
+
+}  // namespace percale
