@@ -252,7 +252,7 @@ class JsonReader {
       return false;
     }
     const std::size_t odd = FindNotText(text_), wrong = FindNotUtf8(text_);
-    if (odd < text_.size() && (text_[odd] == '\0' || odd < wrong)) {
+    if (odd < wrong || text_.find('\0') != std::string::npos) {
       Fail(odd, "byte " + Hex(text_[odd]) +
                     " never stands in a text; expected a scene in JSON, this looks like a binary file");
       return false;
@@ -458,8 +458,7 @@ class JsonReader {
     if (bare == "true" || bare == "false" || bare == "null" || bare == "none") {
       return Fail(at, got + "; JSON writes true, false and null in small letters");
     }
-    if (!bare.empty() && !IsDigit(bare[0]) && bare[0] != '.')
-      return Fail(at, got + "; JSON writes texts in double quotes");
+    if (!bare.empty() && IsLetter(bare[0])) return Fail(at, got + "; JSON writes texts in double quotes");
 
     const bool onlyNumberParts = bare.find_first_not_of("0123456789.e+-") == std::string::npos;
     if (word[0] == '+') return Fail(at, got + "; JSON numbers have no leading '+'");
