@@ -22,14 +22,15 @@ out vec4 out_color;
 void main() {
   float along = u_axis == 1 ? v_position.x - u_from : u_to - v_position.y;
   float band = along / (u_to - u_from) * float(u_bands);
-  vec3 color = u_band_1;
-  if (band >= 1.0) color = u_band_2;
-  if (band >= 2.0 && u_bands > 2) color = u_band_3;
+  // One pixel wide, the bands mix: multisampling does not smooth what happens inside a triangle.
+  float pixel = max(fwidth(band), 1e-6);
+  vec3 color = mix(u_band_1, u_band_2, clamp((band - 1.0) / pixel + 0.5, 0.0, 1.0));
+  if (u_bands > 2) color = mix(color, u_band_3, clamp((band - 2.0) / pixel + 0.5, 0.0, 1.0));
   if (u_lit) {
     vec3 toLight = u_light_pos - v_position.xyz;
     // Cloth lets light through: the side away from the light is dimmer, not black.
     float cosine = dot(normalize(v_normal.xyz), normalize(toLight));
-    color *= 0.25 + u_light_intensity / dot(toLight, toLight) * (cosine > 0.0 ? cosine : -0.4 * cosine);
+    color *= 0.4 + u_light_intensity / dot(toLight, toLight) * (cosine > 0.0 ? cosine : -0.4 * cosine);
   }
   out_color = vec4(color, 1.0);
 }

@@ -187,19 +187,21 @@ def marble(x, y, size):
 
 
 def bricks(x, y, size):
-    rows, columns, joint, bevel = 12, 6, 2.6, 2.0  # joint and bevel in pixels
+    # Few pixels and a steep edge: the classic bump shader takes the difference of neighbouring
+    # pixels for the slope, so this is what makes it show.
+    rows, columns, joint, bevel = 10, 5, 2.4, 1.0  # joint and bevel in pixels
     bw, bh = size / columns, size / rows
     row = int(y / bh)
     shifted = x + (bw / 2 if row % 2 else 0)
     column = int(shifted / bw) % columns
     dx, dy = shifted % bw, y % bh
     # Hand-made bricks: each edge wavers a little.
-    waver = 1.4 * (fractal2(x / size, y / size, 16, 2, 5) - 0.5)
+    waver = 0.9 * (fractal2(x / size, y / size, 16, 2, 5) - 0.5)
     edge = min(dx, bw - dx, dy, bh - dy) - joint / 2 + waver
     body = smooth(0, bevel, edge)
     top = 0.78 + 0.16 * (hash_unit(row, column, 3) - 0.5)
-    rough = 0.16 * (fractal2(x / size, y / size, 32, 3, 17) - 0.5)
-    mortar = 0.12 + 0.08 * (fractal2(x / size, y / size, 64, 1, 23) - 0.5)
+    rough = 0.30 * (fractal2(x / size, y / size, 32, 2, 17) - 0.5)
+    mortar = 0.12 + 0.08 * (fractal2(x / size, y / size, 32, 1, 23) - 0.5)
     return (clamp(mortar + (top + rough - mortar) * body),)
 
 
@@ -285,7 +287,7 @@ def surroundings(x, y, z):
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
     os.makedirs(os.path.join(folder, "cube"), exist_ok=True)
-    for number, size, channels, make in ((1, 512, 3, printed_cotton), (2, 256, 1, marble), (3, 256, 1, bricks), (4, 384, 3, tartan)):
+    for number, size, channels, make in ((1, 512, 3, printed_cotton), (2, 256, 1, marble), (3, 128, 1, bricks), (4, 384, 3, tartan)):
         write_png(os.path.join(folder, f"texture_{number}.png"), size, channels, lambda x, y: make(x, y, size))
     size = 256
     for name, direction in FACES.items():

@@ -1,0 +1,120 @@
+#include "render/headless.h"
+#include "tests/render/render_fixture.h"
+
+using namespace percale;
+using percale::test::Must;
+using percale::test::TemporaryFolder;
+using percale::test::WriteText;
+
+namespace {
+
+const std::string kVertex =
+    "#version 330\nuniform mat4 u_view_projection;\nin vec4 in_position;\nout vec4 v_position;\n"
+    "void main() { v_position = in_position; gl_Position = u_view_projection * in_position; }\n";
+const std::string kGood =
+    "#version 330\nin vec4 v_position;\nout vec4 out_color;\nvoid main() {\n  out_color = v_position;\n}\n";
+const std::string kBad = "#version 330\nout vec4 out_color;\nvoid main() {\n  out_color = undefined_name;\n}\n";
+
+}  // namespace
+
+TEST_CASE("every shader of the project compiles without a word") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  ShaderLibrary library("shaders");
+  for (const std::string& name : library.names()) {
+    CAPTURE(name);
+    INFO(Format(library.Problems(name)));
+    CHECK(library.Problems(name).empty());
+    CHECK(library.Find(name) != nullptr);
+  }
+}
+
+TEST_CASE("a shader that does not compile is reported with file, line and the driver's words") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  const TemporaryFolder folder;
+  WriteText(folder / "Default.vert", kVertex);
+  WriteText(folder / "Bad.frag", kBad);
+  ShaderLibrary library(folder.path());
+  CHECK(library.Find("Bad") == nullptr);
+  const Diagnostics& problems = library.Problems("Bad");
+  REQUIRE(HasErrors(problems));
+  CHECK(problems.front().place.file == (folder / "Bad.frag").string());
+  CHECK(problems.front().place.line == 4);
+  CHECK(problems.front().message.find("undefined_name") != std::string::npos);
+  CHECK(problems.front().excerpt.find("out_color = undefined_name") != std::string::npos);
+}
+
+TEST_CASE("the last good version stays in use while a file is broken, and the next good one replaces it") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  const TemporaryFolder folder;
+  WriteText(folder / "Default.vert", kVertex);
+  WriteText(folder / "A.frag", kGood);
+  ShaderLibrary library(folder.path());
+  const ShaderProgram* good = library.Find("A");
+  REQUIRE(good != nullptr);
+  const unsigned program = good->program;
+  CHECK_FALSE(library.ReloadChanged());
+
+  WriteText(folder / "A.frag", kBad);
+  CHECK(library.ReloadChanged());
+  REQUIRE(library.Find("A") != nullptr);
+  CHECK(library.Find("A")->program == program);
+  CHECK(HasErrors(library.Problems("A")));
+  CHECK_FALSE(library.ReloadChanged());
+
+  WriteText(folder / "A.frag", kGood + "uniform float u_extra;  // @range 0 2 @default 1\n");
+  CHECK(library.ReloadChanged());
+  CHECK(library.Find("A") != nullptr);
+  CHECK(library.Problems("A").empty());
+  REQUIRE(library.Parameters("A").size() == 1);
+  CHECK(library.Parameters("A")[0].name == "u_extra");
+}
+
+TEST_CASE("new files are new shaders, removed ones go, and a vertex shader of the same name is used") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  const TemporaryFolder folder;
+  WriteText(folder / "Default.vert", kVertex);
+  WriteText(folder / "Zebra.frag", kGood);
+  WriteText(folder / "Mirror.frag", kGood);
+  ShaderLibrary library(folder.path());
+  CHECK(library.names() == std::vector<std::string>{"Mirror", "Zebra"});
+  REQUIRE(library.Find("Zebra") != nullptr);
+  CHECK(library.Find("Zebra")->Location("u_own") < 0);
+
+  WriteText(folder / "Apple.frag", kGood);
+  CHECK(library.ReloadChanged());
+  CHECK(library.names() == std::vector<std::string>{"Mirror", "Apple", "Zebra"});
+
+  std::string own = kVertex;
+  own.replace(own.find("in vec4"), 0, "uniform float u_own;\n");
+  own.replace(own.find("u_view_projection * in"), 0, "u_own * ");
+  WriteText(folder / "Zebra.vert", own);
+  CHECK(library.ReloadChanged());
+  CHECK(library.Find("Zebra")->Location("u_own") >= 0);
+
+  std::filesystem::remove(folder / "Apple.frag");
+  CHECK(library.ReloadChanged());
+  CHECK(library.names() == std::vector<std::string>{"Mirror", "Zebra"});
+}
+
+TEST_CASE("shaders that do not fit together, missing and empty files, are errors and no crash") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  const TemporaryFolder folder;
+  WriteText(folder / "Needs.frag",
+            "#version 330\nin vec2 v_position;\nout vec4 out_color;\nvoid main() { out_color = vec4(v_position, 0.0, "
+            "1.0); }\n");
+  WriteText(folder / "Empty.frag", "");
+  WriteText(folder / "Binary.frag", std::string("\x7f"
+                                                "ELF\0\0\xff",
+                                                7));
+  ShaderLibrary library(folder.path());
+  CHECK(test::Contains(library.Problems("Needs"), "Default.vert"));  // There is none.
+  WriteText(folder / "Default.vert", kVertex);
+  library.ReloadChanged();
+  for (const char* name : {"Needs", "Empty", "Binary"}) {
+    CAPTURE(name);
+    CHECK(library.Find(name) == nullptr);
+    CHECK(HasErrors(library.Problems(name)));
+  }
+  CHECK(test::Contains(library.Problems("Needs"), "Needs.frag"));
+  CHECK(test::Contains(library.Problems("Neds"), "did you mean `Needs`"));
+}
