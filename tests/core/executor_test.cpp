@@ -11,7 +11,8 @@ namespace {
 TEST_CASE("Every chunk runs exactly once, for any number of threads and chunks") {
   for (const int threads : {1, 2, 3, 8}) {
     const Executor executor(threads);
-    CHECK(executor.threads() == threads);
+    CHECK(executor.threads() >= 1);
+    CHECK(executor.threads() <= threads);  // fewer in a build without threads
     for (const int chunks : {0, 1, 2, 7, 1000}) {
       std::vector<std::atomic<int>> runs(static_cast<std::size_t>(chunks));
       executor.ForChunks(chunks, [&](int chunk) { ++runs[static_cast<std::size_t>(chunk)]; });
