@@ -175,14 +175,21 @@ class Builder {
            options_.width = Whole("--size", parts[0], 1, kLargestPicture);
            options_.height = Whole("--size", parts[1], 1, kLargestPicture);
          });
-    Call(app, "--samples", "Samples per pixel, which smooth edges: 1, 2, 4, 8 or 16; default 4", "N", "Picture",
-         [this](const std::string& text) {
+    Call(app, "--samples",
+         "Samples per pixel, which smooth edges: 1, 2, 4, 8 or 16; default 4, in the viewer 1 where the CPU draws", "N",
+         "Picture", [this](const std::string& text) {
            const auto number = AnyNumber(text);
            if (!number || (*number != 1 && *number != 2 && *number != 4 && *number != 8 && *number != 16)) {
              Refuse("--samples", "1, 2, 4, 8 or 16", text);
            }
            options_.samples = static_cast<int>(*number);
          });
+  }
+
+  void Log(CLI::App& app) {
+    app.add_option("--log", options_.log, "Writes what happens in the viewer to a file, one line of JSON per event")
+        ->type_name("FILE")
+        ->group("Viewer");
   }
 
   template <class Function>
@@ -268,6 +275,7 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   builder.Scene(view, false);
   builder.Sphere(view, nullptr);
   builder.Picture(view);
+  builder.Log(view);
 
   CLI::App& simulate =
       verb(Verb::Simulate, "Runs a scene without drawing, prints a summary, writes caches",
@@ -415,6 +423,7 @@ std::variant<Options, int> ParseCommandLine(const std::vector<std::string>& argu
   builder.Scene(app, false);
   builder.Sphere(app, nullptr);
   builder.Picture(app);
+  builder.Log(app);
   AddVerbs(app, builder);
 
   std::string verb;

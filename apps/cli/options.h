@@ -50,16 +50,18 @@ struct Options {
   std::optional<int> every;
   std::optional<int> frame;  ///< Of shot.
 
-  int latitudes = 40;   ///< -a
-  int longitudes = 40;  ///< -o with a whole number.
-  int width = 1024;     ///< [pixel]
-  int height = 800;     ///< [pixel]
-  int samples = 4;
+  int latitudes = 40;           ///< -a
+  int longitudes = 40;          ///< -o with a whole number.
+  int width = 1024;             ///< [pixel]
+  int height = 800;             ///< [pixel]
+  std::optional<int> samples;   ///< Per pixel; none: 4, or for the viewer what the card does well.
   double framesPerSecond = 30;  ///< Of a video.
   std::string shader;           ///< Empty: the scene's.
   std::vector<UniformOption> uniforms;
   std::optional<double> azimuth, elevation, distance;  ///< --camera [degree, degree, m]
   std::optional<std::vector<double>> target;           ///< --target, three numbers [m]
+
+  std::string log;  ///< view --log
 
   bool schema = false;     ///< check --schema
   std::string benchmark;   ///< bench NAME; empty: springs.

@@ -44,8 +44,9 @@ int View(const Options& options) {
   viewer.view = MakeView(options, session.scene);
   viewer.width = options.width;
   viewer.height = options.height;
-  viewer.samples = options.samples;
+  viewer.samples = options.samples.value_or(0);
   viewer.threads = options.threads;
+  viewer.log = TextPath(options.log);
   return RunViewer(viewer);
 #else
   PrintError("this build has no viewer; percale shot and percale render draw without one");
