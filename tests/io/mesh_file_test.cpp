@@ -1,0 +1,324 @@
+#include "percale/mesh_file.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "io/atomic_file.h"
+#include "io/cache_kind.h"
+
+using namespace percale;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// An empty folder that goes away with the test.
+class Folder {
+ public:
+  Folder() {
+    for (int i = 0;; ++i) {
+      path_ = fs::temp_directory_path() / ("percale mesh_file " + std::to_string(i));
+      if (fs::create_directory(path_)) break;
+    }
+  }
+  ~Folder() { fs::remove_all(path_); }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  int Count() const {
+    int count = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(path_)) count += entry.exists() ? 1 : 0;
+    return count;
+  }
+
+ private:
+  fs::path path_;
+};
+
+std::string Contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+void Put(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+Scene SmallScene(int width, int height) {
+  Scene scene;
+  ClothSettings cloth;
+  cloth.numWidthPoints = width;
+  cloth.numHeightPoints = height;
+  cloth.pinned = {{0, 0}};
+  scene.cloths = {cloth};
+  return scene;
+}
+
+/// splitmix64, so that the damage below is the same everywhere.
+struct Random {
+  std::uint64_t state;
+  std::uint64_t operator()() {
+    std::uint64_t z = (state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A file appears at Commit, and not before") {
+  const Folder folder;
+  auto file = AtomicFile::Create(folder / "a.txt");
+  REQUIRE(file);
+  CHECK(file->Write("new"));
+  CHECK_FALSE(fs::exists(folder / "a.txt"));
+  CHECK(file->Commit());
+  CHECK(Contents(folder / "a.txt") == "new");
+  CHECK(folder.Count() == 1);
+}
+
+TEST_CASE("A file that is given up leaves the old one as it was") {
+  const Folder folder;
+  Put(folder / "a.txt", "old");
+  {
+    auto file = AtomicFile::Create(folder / "a.txt");
+    REQUIRE(file);
+    CHECK(file->Write("new"));
+    AtomicFile moved = std::move(*file);
+    CHECK(moved.Write("er"));
+  }
+  CHECK(Contents(folder / "a.txt") == "old");
+  CHECK(folder.Count() == 1);
+}
+
+TEST_CASE("Two writers of one file do not meet") {
+  const Folder folder;
+  auto first = AtomicFile::Create(folder / "a.txt");
+  auto second = AtomicFile::Create(folder / "a.txt");
+  REQUIRE(first);
+  REQUIRE(second);
+  CHECK(first->path() != second->path());
+  CHECK(first->path().extension() == ".txt");
+  CHECK(first->Write("first"));
+  CHECK(second->Write("second"));
+  CHECK(second->Commit());
+  CHECK(first->Commit());
+  CHECK(Contents(folder / "a.txt") == "first");
+  CHECK(folder.Count() == 1);
+}
+
+TEST_CASE("Bytes can be put in afterwards") {
+  const Folder folder;
+  auto file = AtomicFile::Create(folder / "a.txt");
+  REQUIRE(file);
+  CHECK(file->Write("0123456789"));
+  CHECK(file->WriteAt(2, "ab", 2));
+  CHECK(file->Write("end"));
+  CHECK(file->CommitAs(folder / "b.txt"));
+  CHECK(Contents(folder / "b.txt") == "01ab456789end");
+  CHECK(folder.Count() == 1);
+}
+
+TEST_CASE("Permissions of the file that is replaced are kept") {
+  const Folder folder;
+  Put(folder / "a.txt", "old");
+  fs::permissions(folder / "a.txt", fs::perms::owner_read | fs::perms::owner_write);
+  auto file = AtomicFile::Create(folder / "a.txt");
+  REQUIRE(file);
+  CHECK(file->Commit());
+  CHECK(fs::status(folder / "a.txt").permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+}
+
+TEST_CASE("What cannot be written is told with its place") {
+  const Folder folder;
+  for (const fs::path& path : {folder / "none/a.txt", folder / "", fs::path()}) {
+    const auto file = AtomicFile::Create(path);
+    REQUIRE_FALSE(file);
+    CHECK(HasErrors(file.diagnostics()));
+  }
+  CHECK(folder.Count() == 0);
+}
+
+TEST_CASE("A full disk is noticed, at the latest at the end") {
+  if (!fs::exists("/dev/full")) return;
+  auto file = AtomicFile::Create("/dev/full");
+  REQUIRE(file);
+  CHECK(file->straight());
+  CHECK(file->Write("x"));  // stays in the buffer
+  const Status status = file->Commit();
+  REQUIRE_FALSE(status);
+  CHECK(status.diagnostics()[0].message.find("disk is full") != std::string::npos);
+}
+
+TEST_CASE("Kinds go by the ending") {
+  CHECK(CacheKindOf("a.csv") == CacheKind::Csv);
+  CHECK(CacheKindOf("a.b.OBJ") == CacheKind::Obj);
+  CHECK(CacheKindOf("a.ply") == CacheKind::Ply);
+  CHECK(CacheKindOf("a.Pc2") == CacheKind::Pc2);
+  CHECK_FALSE(CacheKindOf("csv"));
+  CHECK_FALSE(CacheKindOf("a.csv.gz"));
+}
+
+TEST_CASE("Without Finish nothing is left behind") {
+  for (const char* name : {"a.csv", "a.obj", "a.ply", "a.pc2"}) {
+    CAPTURE(name);
+    const Folder folder;
+    {
+      World world(SmallScene(4, 3), {.threads = 1});
+      auto writer = CacheWriter::Open(folder / name, 0.1);
+      REQUIRE(writer);
+      CHECK(writer->Add(world, 0));
+      world.Step();
+      CHECK(writer->Add(world, 1));
+    }
+    CHECK(folder.Count() == 0);
+  }
+}
+
+TEST_CASE("A cache of no frames is an error, and no file") {
+  const Folder folder;
+  auto writer = CacheWriter::Open(folder / "a.csv", 0.1);
+  REQUIRE(writer);
+  CHECK_FALSE(writer->Finish());
+  CHECK(folder.Count() == 0);
+}
+
+TEST_CASE("Frames of another mesh are refused, and then everything") {
+  const Folder folder;
+  World small(SmallScene(3, 3), {.threads = 1}), large(SmallScene(4, 4), {.threads = 1});
+  auto writer = CacheWriter::Open(folder / "a.pc2", 0.1);
+  REQUIRE(writer);
+  CHECK(writer->Add(small, 0));
+  CHECK_FALSE(writer->Add(large, 1));
+  CHECK_FALSE(writer->Add(small, 2));
+  CHECK_FALSE(writer->Finish());
+  CHECK(folder.Count() == 0);
+}
+
+TEST_CASE("What is written is what is told of it") {
+  const Folder folder;
+  for (const char* name : {"a.csv", "a.pc2", "a.obj", "a.ply"}) {
+    CAPTURE(name);
+    World world(SmallScene(5, 4), {.threads = 1});
+    auto writer = CacheWriter::Open(folder / name, 0.25);
+    REQUIRE(writer);
+    const bool several = CacheKindOf(name) == CacheKind::Csv || CacheKindOf(name) == CacheKind::Pc2;
+    double lowest = 1e9;
+    for (int frame = 0; frame < (several ? 3 : 1); ++frame) {
+      CHECK(writer->Add(world, frame));
+      for (const Vec3& x : world.Cloth(0).positions()) lowest = std::min(lowest, x.y);
+      world.Step();
+    }
+    const auto files = writer->Finish();
+    REQUIRE(files);
+    CHECK((*files)[0] == folder / name);
+    const auto info = ReadCacheInfo(folder / name);
+    REQUIRE_MESSAGE(info, Format(info.diagnostics()));
+    CHECK(info->frames == (several ? 3 : 1));
+    CHECK(info->vertices == 20);
+    CHECK(info->triangles == (several ? 0 : 24));
+    CHECK(info->boxMin.y == doctest::Approx(lowest).epsilon(1e-7));
+    CHECK(info->boxMax.y == doctest::Approx(1));
+    if (CacheKindOf(name) == CacheKind::Pc2) CHECK(info->frameSeconds == 0.25);
+  }
+}
+
+TEST_CASE("Meshes of other programs are understood") {
+  const Folder folder;
+  Put(folder / "a.obj",
+      "# c\r\nmtllib x.mtl\r\nv +1 .5 -2.\r\nv 1e0 2 3 1.0\r\nv 0 0 0\r\nv 007 0 0\r\nf 1//1 2//1 3//1 4//1\r\nf -1 -2 "
+      "-3\r\n");
+  auto info = ReadCacheInfo(folder / "a.obj");
+  REQUIRE_MESSAGE(info, Format(info.diagnostics()));
+  CHECK(info->vertices == 4);
+  CHECK(info->triangles == 3);
+  CHECK(info->boxMin == Vec3{0, 0, -2});
+  CHECK(info->boxMax == Vec3{7, 2, 3});
+
+  Put(folder / "text.ply",
+      "ply\nformat ascii 1.0\ncomment c\nelement vertex 3\nproperty float x\nproperty float y\nproperty uchar red\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 255 0\n1 0 0 2\n0 3 0 "
+      "0\n"
+      "3 0 1 2\n");
+  info = ReadCacheInfo(folder / "text.ply");
+  REQUIRE_MESSAGE(info, Format(info.diagnostics()));
+  CHECK(info->vertices == 3);
+  CHECK(info->triangles == 1);
+  CHECK(info->boxMax == Vec3{1, 3, 2});
+
+  std::string big =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty float x\nproperty short y\nproperty double "
+      "z\nend_header\n";
+  big += std::string("\x3f\x80\x00\x00", 4) + std::string("\xff\xfe", 2) + std::string("\x40\x08\0\0\0\0\0\0", 8);
+  Put(folder / "big.ply", big);
+  info = ReadCacheInfo(folder / "big.ply");
+  REQUIRE_MESSAGE(info, Format(info.diagnostics()));
+  CHECK(info->boxMin == Vec3{1, -2, 3});
+}
+
+TEST_CASE("Whatever is done to a file, it is read or refused") {
+  const Folder folder;
+  World world(SmallScene(4, 4), {.threads = 1});
+  Random random{7};
+  for (const char* name : {"a.csv", "a.pc2", "a.obj", "a.ply"}) {
+    auto writer = CacheWriter::Open(folder / name, 0.25);
+    REQUIRE(writer);
+    CHECK(writer->Add(world, 0));
+    if (CacheKindOf(name) == CacheKind::Csv || CacheKindOf(name) == CacheKind::Pc2) CHECK(writer->Add(world, 1));
+    REQUIRE(writer->Finish());
+    const std::string good = Contents(folder / name);
+    int refused = 0;
+    for (int i = 0; i < 400; ++i) {
+      std::string bad = good;
+      if (i % 4 == 0) bad.resize(random() % good.size());
+      for (int k = i % 4; k > 0; --k)
+        bad[random() % std::min<std::size_t>(bad.size(), i % 8 < 4 ? 64 : bad.size())] = char(random());
+      const fs::path file = folder / (std::string("bad") + name);
+      Put(file, bad);
+      const auto info = ReadCacheInfo(file);
+      if (info) {
+        CHECK(info->vertices >= 0);
+        CHECK(IsFinite(info->boxMin));
+        CHECK(IsFinite(info->boxMax));
+      } else {
+        ++refused;
+        CHECK(HasErrors(info.diagnostics()));
+        CHECK(info.diagnostics()[0].place.file == PathText(file));
+      }
+    }
+    CAPTURE(name);
+    CHECK(refused >= 100);  // each cut, and more
+  }
+}
+
+TEST_CASE("Cut short is never taken for whole") {
+  const Folder folder;
+  World world(SmallScene(3, 3), {.threads = 1});
+  for (const char* name : {"a.pc2", "a.ply"}) {
+    auto writer = CacheWriter::Open(folder / name, 0.25);
+    REQUIRE(writer);
+    CHECK(writer->Add(world, 0));
+    REQUIRE(writer->Finish());
+    const std::string good = Contents(folder / name);
+    const fs::path file = folder / (std::string("cut") + name);
+    for (std::size_t size = 0; size < good.size(); ++size) {
+      Put(file, good.substr(0, size));
+      CHECK_FALSE(ReadCacheInfo(file));
+    }
+  }
+}
+
+TEST_CASE("What is no file") {
+  const Folder folder;
+  CHECK_FALSE(ReadCacheInfo(folder / "none.obj"));
+  fs::create_directory(folder / "folder.obj");
+  CHECK_FALSE(ReadCacheInfo(folder / "folder.obj"));
+  Put(folder / "a.xyz", "v 0 0 0\n");
+  CHECK_FALSE(ReadCacheInfo(folder / "a.xyz"));
+}
