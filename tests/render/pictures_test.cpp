@@ -396,21 +396,22 @@ TEST_CASE("a height map tilts normals in Bump, and moves the surface in Displace
   CHECK(std::abs(smooth.first - moved.first - 0.025 * metre) <= 2);
   CHECK(std::abs(moved.second - smooth.second - 0.075 * metre) <= 2);
 
-  // On a flat sheet with light from straight ahead the diffuse part falls to the cosine of the tilt.
+  // On a flat sheet, left of the light, brightness follows from the tilt by the formulas.
   const TestCloth cloth(test::Grid(4), test::Upright);
   Scene scene = OneCloth();
   View view = View::ForScene(scene);
   view.textures = sphere.view.textures;
   view.look.shader = "Bump";
   view.look.heightScaling = 1;
+  const Vec3 point{0.2, 0.5, 0};
   const auto brightness = [&](double normalScaling) {
     view.look.normalScaling = normalScaling;
     const Image image = Paint(scene, {cloth.Shape()}, view);
-    const Pixel at = PixelOf(view, {0.5, 0.5, 0});
+    const Pixel at = PixelOf(view, point);
     return int(image.At(int(at.x), int(at.y))[0]);
   };
-  const Vec3 toLight = Vec3{0.5, 2, 2} - Vec3{0.5, 0.5, 0}, l = UnitOr(toLight, {});
-  const Vec3 h = UnitOr(l + UnitOr(view.camera.position() - Vec3{0.5, 0.5, 0}, {}), {});
+  const Vec3 toLight = Vec3{0.5, 2, 2} - point, l = UnitOr(toLight, {});
+  const Vec3 h = UnitOr(l + UnitOr(view.camera.position() - point, {}), {});
   for (const double scaling : {0.0, 20.0, 60.0}) {
     const double slope = 4.0 / 255 * scaling;  // One texel's step, which is what the course's shader takes.
     const Vec3 n = UnitOr(Vec3{-slope, 0, 1}, {});

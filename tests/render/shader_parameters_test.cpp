@@ -55,10 +55,11 @@ TEST_CASE("annotations that make no sense are named with their line") {
       {"uniform float u_a; // @range 0 1 @default 7", "outside of the range"},
       {"uniform float u_a; // @range 0 nan", "two growing numbers"},
   };
-  for (const auto& [line, message] : cases) {
-    Diagnostics diagnostics;
-    Parse(std::string("\n\n") + line + "\n", diagnostics);
+  for (const auto& [source, message] : cases) {
+    const std::string line = source;
     CAPTURE(line);
+    Diagnostics diagnostics;
+    Parse("\n\n" + line + "\n", diagnostics);
     REQUIRE(diagnostics.size() == 1);
     CHECK(diagnostics[0].severity == Severity::Warning);
     CHECK(diagnostics[0].place.line == 3);
