@@ -93,7 +93,8 @@ std::variant<Studio, int> OpenStudio(const Options& options, const Session& sess
   }
   bool noGraphics = false;
   auto painter = Painter::Open(
-      {.root = *root, .width = options.width, .height = options.height, .samples = options.samples.value_or(4)}, &noGraphics);
+      {.root = *root, .width = options.width, .height = options.height, .samples = options.samples.value_or(4)},
+      &noGraphics);
   if (!painter) {
     PrintDiagnostics(painter.diagnostics());
     return noGraphics ? kNoGraphics : kFailed;
