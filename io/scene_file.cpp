@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -66,8 +67,17 @@ class SceneReader {
  private:
   static constexpr JsonIndex kRoot = 0;
 
-  void Error(JsonIndex value, const std::string& message) {
-    diagnostics_.push_back(document_.About(value, Severity::Error, message));
+  void Error(JsonIndex value, const std::string& message) { Report(value, Severity::Error, message); }
+
+  /// Keeps a message, or only counts it once there are many; at least one error is kept.
+  void Report(JsonIndex value, Severity severity, const std::string& message) {
+    const bool isError = severity == Severity::Error;
+    if (diagnostics_.size() >= kMostMessages && (hasErrors_ || !isError)) {
+      ++dropped_;
+      return;
+    }
+    hasErrors_ = hasErrors_ || isError;
+    diagnostics_.push_back(document_.About(value, severity, message));
   }
 
   void ReadGroup(const ParameterGroup& group, JsonIndex value) {
@@ -169,7 +179,7 @@ class SceneReader {
 
   std::optional<Value> ConvertPoints(JsonIndex value, const std::string& path) {
     std::vector<GridPoint> points;
-    const std::size_t before = diagnostics_.size();
+    bool good = true;
     const std::vector<JsonIndex> elements = document_.Children(value);
     for (std::size_t k = 0; k < elements.size(); ++k) {
       const std::string place = path + "/" + std::to_string(k);
@@ -178,14 +188,16 @@ class SceneReader {
       if (!isArray || ij.size() != 2) {
         Error(elements[k],
               place + ": expected a point [i, j], two whole numbers, got " + document_.Source(elements[k]));
+        good = false;
         continue;
       }
       double numbers[2] = {};
-      if (ReadWhole(ij[0], place + "/0", numbers[0]) && ReadWhole(ij[1], place + "/1", numbers[1])) {
-        points.push_back({static_cast<int>(numbers[0]), static_cast<int>(numbers[1])});
-      }
+      const bool whole0 = ReadWhole(ij[0], place + "/0", numbers[0]),
+                 whole1 = ReadWhole(ij[1], place + "/1", numbers[1]);
+      good = good && whole0 && whole1;
+      if (good) points.push_back({static_cast<int>(numbers[0]), static_cast<int>(numbers[1])});
     }
-    if (diagnostics_.size() > before) return std::nullopt;
+    if (!good) return std::nullopt;
     return points;
   }
 
@@ -228,6 +240,11 @@ class SceneReader {
       hint += ", and keys that begin with '_' for comments";
     }
     const std::string quoted = Quote(key, 40);  // its escapes, without the quotes
+    if (diagnostics_.size() >= kMostMessages && hasErrors_) {
+      ++dropped_;
+      return;
+    }
+    hasErrors_ = true;
     diagnostics_.push_back(document_.AboutKey(
         member, Severity::Error, path + "/" + quoted.substr(1, quoted.size() - 2) + ": unknown key" + hint));
   }
@@ -240,7 +257,7 @@ class SceneReader {
       const std::vector<std::string_view> parts = SplitPath(canonical);
       if (FollowsFromFailure(canonical, parts, found.severity)) continue;
       auto [value, path] = Locate(parts);
-      diagnostics_.push_back(document_.About(value, found.severity, path + found.message.substr(colon)));
+      Report(value, found.severity, path + found.message.substr(colon));
     }
   }
 
@@ -268,7 +285,7 @@ class SceneReader {
 
   /// The value with that canonical path, or the nearest above it that the file states; and the path
   /// as the file would write it.
-  std::pair<JsonIndex, std::string> Locate(const std::vector<std::string_view>& parts) const {
+  std::pair<JsonIndex, std::string> Locate(const std::vector<std::string_view>& parts) {
     std::string path;
     JsonIndex value = kRoot;
     bool found = true;
@@ -281,7 +298,9 @@ class SceneReader {
       if (document_.Kind(value) == JsonKind::Object) {
         next = document_.Member(value, parts[k]);
       } else if (const auto index = ParseNumber(parts[k])) {
-        const std::vector<JsonIndex> children = document_.Children(value);
+        const auto [entry, isNew] = children_.try_emplace(value);
+        std::vector<JsonIndex>& children = entry->second;
+        if (isNew) children = document_.Children(value);
         if (*index < static_cast<double>(children.size())) next = children[static_cast<std::size_t>(*index)];
       }
       found = next != 0;
@@ -294,17 +313,11 @@ class SceneReader {
     std::stable_sort(diagnostics_.begin(), diagnostics_.end(), [](const Diagnostic& a, const Diagnostic& b) {
       return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
     });
-    const bool failed = HasErrors(diagnostics_);
-    if (diagnostics_.size() > kMostMessages) {
-      const std::size_t more = diagnostics_.size() - kMostMessages;
-      // Errors stay before warnings, so that none of them is what is left out while a warning is not.
-      std::stable_partition(diagnostics_.begin(), diagnostics_.end(),
-                            [](const Diagnostic& d) { return d.severity == Severity::Error; });
-      diagnostics_.resize(kMostMessages);
+    if (dropped_ > 0) {
       diagnostics_.push_back(
-          {Severity::Note, {scene_.name, 0, 0}, "and " + std::to_string(more) + " more problems", {}, 0});
+          {Severity::Note, {scene_.name, 0, 0}, "and " + std::to_string(dropped_) + " more problems", {}, 0});
     }
-    if (failed) return std::move(diagnostics_);
+    if (hasErrors_) return std::move(diagnostics_);
     return {std::move(scene_), std::move(diagnostics_)};
   }
 
@@ -312,7 +325,10 @@ class SceneReader {
   Origins* origins_;
   Scene scene_;
   std::set<std::string> failed_;  ///< Canonical paths of values that are missing, unknown or wrong.
+  std::map<JsonIndex, std::vector<JsonIndex>> children_;  ///< Of arrays that messages pointed into.
   Diagnostics diagnostics_;
+  bool hasErrors_ = false;
+  std::size_t dropped_ = 0;  ///< Messages beyond those kept.
 };
 
 Result<Scene> ReadScene(const Result<JsonDocument>& document, const std::string& name, Origins* origins) {

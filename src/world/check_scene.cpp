@@ -22,6 +22,8 @@ constexpr double kSmallestSpacing = 1e-9;
 constexpr double kShortestNormal = 1e-9;
 constexpr int kMostStepsPerFrame = 100000;
 constexpr std::size_t kLongestShaderName = 100;
+/// Of a list of a million wrong pins nobody reads more.
+constexpr std::size_t kMostMessages = 10000;
 
 using Indices = std::vector<std::size_t>;
 
@@ -44,10 +46,11 @@ class Checker {
 
  private:
   void Error(const std::string& path, const std::string& message) {
-    diagnostics_.push_back(MakeError(path + ": " + message));
+    if (diagnostics_.size() < kMostMessages || !hasErrors_) diagnostics_.push_back(MakeError(path + ": " + message));
+    hasErrors_ = true;
   }
   void Warn(const std::string& path, const std::string& message) {
-    diagnostics_.push_back(MakeWarning(path + ": " + message));
+    if (diagnostics_.size() < kMostMessages) diagnostics_.push_back(MakeWarning(path + ": " + message));
   }
 
   void CheckValues() {
@@ -223,6 +226,7 @@ class Checker {
 
   const Scene& scene_;
   Diagnostics diagnostics_;
+  bool hasErrors_ = false;
 };
 
 }  // namespace

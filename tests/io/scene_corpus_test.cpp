@@ -307,6 +307,19 @@ TEST_CASE("Large texts take no longer than reading them") {
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t kSize = 10'000'000;
   std::string brackets = "{\"_\": [", pins = "{\"cloth\": {\"pinned\": [";
+  // Good but for every pin being outside the grid, and but for every cloth having too large a ks.
+  std::string outside = Write(OneOfEach(), "/cloth/pinned", "[").text, many;
+  outside.resize(outside.rfind('[', outside.find("enable_structural")) + 1);
+  while (outside.size() < kSize / 4) outside += "[90, 90], ";
+  outside +=
+      "[0, 0]], \"enable_structural\": true, \"enable_shearing\": true, \"enable_bending\": true, \"damping\": 0, "
+      "\"density\": 150, \"ks\": 5000}}";
+  const std::string cloth =
+      "{\"width\": 1, \"height\": 1, \"num_width_points\": 2, \"num_height_points\": 2, \"thickness\": 0.1, "
+      "\"orientation\": 0, \"enable_structural\": true, \"enable_shearing\": true, \"enable_bending\": true, "
+      "\"damping\": 0.2, \"density\": 1, \"ks\": 1e12}";
+  while (many.size() < kSize / 4) many += cloth + ", ";
+  many = "{\"cloth\": [" + many + cloth + "], \"sphere\": 5}";
   while (brackets.size() < kSize / 4) brackets += "[], ";
   while (pins.size() < kSize / 4) pins += "[\"x\", 0], ";
   const std::string texts[] = {
@@ -318,6 +331,8 @@ TEST_CASE("Large texts take no longer than reading them") {
       "{\"" + std::string(kSize, 'k') + "\": 5}",
       std::string(kSize, '9'),
       brackets + "0]}",
+      outside,
+      many,
       pins + "0]}}",
       std::string(kSize, '{'),
       "{" + std::string(kSize, ' ') + "\"cloth\": 5}",
@@ -329,6 +344,7 @@ TEST_CASE("Large texts take no longer than reading them") {
     CHECK(result.diagnostics().size() <= 1001);
     for (const Diagnostic& d : result.diagnostics()) CHECK(d.message.size() + d.excerpt.size() < 2000);
   }
+  CHECK(ParseScene(outside, "test").diagnostics()[0].message.find("expected a point of the grid") != std::string::npos);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   CHECK(seconds.count() < 60);  // about 2 s; a loop over the square of the size would take hours
 }
