@@ -15,7 +15,11 @@ constexpr double kInterval = 0.1;  // s
 }  // namespace
 
 Progress::Progress(ProgressKind kind, std::string what, int frames)
-    : kind_(kind), what_(std::move(what)), frames_(frames), start_(Clock::now()), shown_(start_) {
+    : kind_(kind),
+      what_(std::move(what)),
+      frames_(frames),
+      start_(Clock::now()),
+      shown_(start_ - std::chrono::hours(1)) {
   if (kind_ == ProgressKind::Automatic) kind_ = IsTerminal(stderr) ? ProgressKind::Bar : ProgressKind::None;
 }
 

@@ -18,7 +18,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// A frame is done. Shown at most ten times a second, and at the last.
+  /// A frame is done. The first is shown at once, then at most ten a second.
   void Update(const StepReport& report);
   /// The last frame is done, however it came to be the last.
   void Finish(const StepReport& report);
