@@ -21,13 +21,16 @@ void Row(std::string_view key, std::string_view help) {
 
 }  // namespace
 
-void DrawHelp(const Session& session, UiState& state, float width, float height) {
+void DrawHelp(const Session& session, UiState& state, float pictureWidth, float height) {
   if (!state.helpVisible) return;
-  ImGui::SetNextWindowPos({width / 2, height / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowPos({pictureWidth / 2, height / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
                                       ImGuiWindowFlags_NoNav;
-  if (ImGui::Begin("Keys and mouse", &state.helpVisible, kFlags)) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
+  const bool shown = ImGui::Begin("Keys and mouse", &state.helpVisible, kFlags);
+  ImGui::PopStyleVar();
+  if (shown) {
     if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_PadOuterX)) {
       for (const Action& action : Actions()) Row(action.key, action.help);
       for (const MouseHelp& mouse : MouseGestures()) Row(mouse.gesture, mouse.help);
@@ -36,9 +39,9 @@ void DrawHelp(const Session& session, UiState& state, float width, float height)
     ImGui::Separator();
     ImGui::TextDisabled("Click a number to type one; point at a name to read what it means.");
     ImGui::TextDisabled("Scene and shader files are read again whenever they are saved.");
+    NoteWindow(session, state, "help");
   }
   ImGui::End();
-  NoteBox(session, state, "help");
 }
 
 }  // namespace percale::viewer

@@ -89,6 +89,7 @@ void DrawMessages(Session& session, UiState& state, float pictureWidth, float he
     for (const Message& message : messages.list()) DrawMessage(message);
     if (messages.list().size() > state.messagesSeen) ImGui::SetScrollHereY(1);
     state.messagesSeen = messages.list().size();
+    NoteWindow(session, state, "messages");
   }
   ImGui::End();
 }

@@ -49,9 +49,8 @@ void DrawClothChoice(Session& session, UiState& state) {
   ImGui::TextUnformatted("Settings of");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
-  const bool open = ImGui::BeginCombo("##cloth", name(state.cloth).c_str());
-  NoteBox(session, state, "cloth choice");
-  if (!open) return;
+  NoteNextBox(session, state, "cloth choice");
+  if (!ImGui::BeginCombo("##cloth", name(state.cloth).c_str())) return;
   for (int cloth = Session::kAll; cloth < count; ++cloth) {
     if (ImGui::Selectable(name(cloth).c_str(), cloth == state.cloth)) state.cloth = cloth;
     NoteBox(session, state, "cloth choice/" + (cloth < 0 ? std::string("all") : std::to_string(cloth)));

@@ -38,7 +38,7 @@ void DrawPanelColumn(Session& session, UiState& state, float width, float height
 void DrawMessages(Session& session, UiState& state, float pictureWidth, float height);
 /// One line in the upper left corner of the picture: paused or running, and which key helps.
 void DrawStatusLine(const Session& session, const UiState& state);
-/// Keys and mouse.
-void DrawHelp(const Session& session, UiState& state, float width, float height);
+/// Keys and mouse, in the middle of the picture.
+void DrawHelp(const Session& session, UiState& state, float pictureWidth, float height);
 
 }  // namespace percale::viewer

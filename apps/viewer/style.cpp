@@ -33,8 +33,8 @@ void SetColors(ImGuiStyle& style) {
   ImVec4* colors = style.Colors;
   colors[ImGuiCol_Text] = Grey(0.94f);
   colors[ImGuiCol_TextDisabled] = Grey(0.64f);
-  colors[ImGuiCol_WindowBg] = Grey(0.13f, 0.97f);
-  colors[ImGuiCol_PopupBg] = Grey(0.11f, 0.98f);
+  colors[ImGuiCol_WindowBg] = Grey(0.13f);
+  colors[ImGuiCol_PopupBg] = Grey(0.11f);
   colors[ImGuiCol_Border] = Grey(0.32f, 0.8f);
   colors[ImGuiCol_FrameBg] = Grey(0.23f);
   colors[ImGuiCol_FrameBgHovered] = Grey(0.30f);

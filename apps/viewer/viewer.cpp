@@ -194,7 +194,7 @@ class Viewer {
       DrawPanelColumn(session_, state_, width, height);
       DrawMessages(session_, state_, static_cast<float>(PictureWidth()), height);
     }
-    DrawHelp(session_, state_, width, height);
+    DrawHelp(session_, state_, static_cast<float>(PictureWidth()), height);
   }
 
   void DrawScene() {
@@ -233,14 +233,23 @@ class Viewer {
                                .Number("width", static_cast<double>(box.width))
                                .Number("height", static_cast<double>(box.height)));
     };
+    // A window that opens takes a picture or two to find its size: what still moves is not told.
     for (const auto& [name, box] : state_.boxes) {
-      const auto old = loggedBoxes_.find(name);
-      if (old == loggedBoxes_.end() || !(old->second == box)) write(name, box);
+      const auto last = lastBoxes_.find(name), logged = loggedBoxes_.find(name);
+      if (last == lastBoxes_.end() || !(last->second == box)) continue;
+      if (logged != loggedBoxes_.end() && logged->second == box) continue;
+      write(name, box);
+      loggedBoxes_[name] = box;
     }
-    for (const auto& [name, box] : loggedBoxes_) {
-      if (state_.boxes.find(name) == state_.boxes.end()) write(name, {});
+    for (auto logged = loggedBoxes_.begin(); logged != loggedBoxes_.end();) {
+      if (state_.boxes.find(logged->first) != state_.boxes.end()) {
+        ++logged;
+        continue;
+      }
+      write(logged->first, {});
+      logged = loggedBoxes_.erase(logged);
     }
-    loggedBoxes_ = state_.boxes;
+    std::swap(lastBoxes_, state_.boxes);
   }
 
   Window& window_;
@@ -250,14 +259,16 @@ class Viewer {
   Hand hand_;
   SceneView sceneView_;
   std::vector<ClothShape> shapes_;
-  std::map<std::string, Box> loggedBoxes_;
-  int width_ = 0, height_ = 0;  // Of the window [screen unit].
+  std::map<std::string, Box> lastBoxes_, loggedBoxes_;  // Of the last picture, and as the log has them.
+  int width_ = 0, height_ = 0;                          // Of the window [screen unit].
   std::int64_t smoothedStep_ = 0;
   bool typing_ = false;
 };
 
 int Fail(const Diagnostics& diagnostics, int code) {
-  std::fputs(Format(diagnostics).c_str(), stderr);
+  for (const Diagnostic& diagnostic : diagnostics) {
+    std::fputs(((diagnostic.place.file.empty() ? "percale: " : "") + Format(diagnostic)).c_str(), stderr);
+  }
   return code;
 }
 

@@ -155,9 +155,8 @@ void RowLabel(const UiState& state, std::string_view label, const std::string& h
 std::optional<int> DropDown(const Session& session, UiState& state, const std::string& id, int current,
                             const std::vector<std::string>& names, const std::string& preview) {
   std::optional<int> chosen;
-  const bool open = ImGui::BeginCombo(("##" + id).c_str(), preview.c_str(), ImGuiComboFlags_HeightLarge);
-  NoteBox(session, state, id);
-  if (!open) return chosen;
+  NoteNextBox(session, state, id);
+  if (!ImGui::BeginCombo(("##" + id).c_str(), preview.c_str(), ImGuiComboFlags_HeightLarge)) return chosen;
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
     const std::string& name = names[static_cast<std::size_t>(i)];
     if (ImGui::Selectable(name.c_str(), i == current)) chosen = i;
@@ -184,7 +183,7 @@ Target MakeTarget(const Session& session, std::string_view group, std::string_vi
   const std::size_t count = FindGroup(group)->count(session.scene());
   if (index != Session::kAll) {
     target.first = static_cast<std::size_t>(index);
-    target.id += "." + std::to_string(index);
+    target.id = std::string(group) + "." + std::to_string(index) + "." + std::string(name);
     return target;
   }
   for (std::size_t i = 1; i < count; ++i) {
@@ -293,6 +292,19 @@ void NoteBox(const Session& session, UiState& state, std::string_view name) {
   if (!session.logged() || !ImGui::IsItemVisible()) return;
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
   state.boxes[std::string(name)] = {min.x, min.y, max.x - min.x, max.y - min.y};
+}
+
+void NoteNextBox(const Session& session, UiState& state, std::string_view name) {
+  const ImVec2 size(ImGui::CalcItemWidth(), ImGui::GetFrameHeight());
+  if (!session.logged() || !ImGui::IsRectVisible(size)) return;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  state.boxes[std::string(name)] = {at.x, at.y, size.x, size.y};
+}
+
+void NoteWindow(const Session& session, UiState& state, std::string_view name) {
+  if (!session.logged()) return;
+  const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  state.boxes[std::string(name)] = {at.x, at.y, size.x, size.y};
 }
 
 void ParameterRow(Session& session, UiState& state, std::string_view group, std::string_view name, int index) {

@@ -35,5 +35,10 @@ void Wrapped(std::string_view text);
 
 /// Notes where the last item is, for the log.
 void NoteBox(const Session& session, UiState& state, std::string_view name);
+/// The same for a control that comes next, one line high and as wide as set: a drop-down, after
+/// which the last item is in its list when that is open.
+void NoteNextBox(const Session& session, UiState& state, std::string_view name);
+/// The same for the window that is being made.
+void NoteWindow(const Session& session, UiState& state, std::string_view name);
 
 }  // namespace percale::viewer

@@ -80,13 +80,15 @@ struct Window::Callbacks {
     event.kind = action == GLFW_PRESS ? InputEvent::Kind::Press : InputEvent::Kind::Release;
     event.button = button == GLFW_MOUSE_BUTTON_LEFT ? InputEvent::Button::Left : InputEvent::Button::Right;
     event.control = (modifiers & GLFW_MOD_CONTROL) != 0;
-    glfwGetCursorPos(window, &event.x, &event.y);
+    // Not where the pointer is by now: a quick hand has moved on since the press.
+    event.x = Of(window).x;
+    event.y = Of(window).y;
     Add(window, event);
   }
   static void Move(GLFWwindow* window, double x, double y) {
     InputEvent event;
-    event.x = x;
-    event.y = y;
+    event.x = Of(window).x = x;
+    event.y = Of(window).y = y;
     Add(window, event);
   }
   static void Wheel(GLFWwindow* window, double, double steps) {

@@ -83,6 +83,7 @@ class Window {
     std::vector<InputEvent> events;
     bool activity = true;
     bool lastRepeated = false;  // Of the key that the next character belongs to.
+    double x = 0, y = 0;        // Of the pointer, as of the last event.
   };
 
   GLFWwindow* window_ = nullptr;

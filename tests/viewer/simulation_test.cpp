@@ -1,0 +1,178 @@
+// The simulation on its thread, without a window.
+#include "apps/viewer/simulation.h"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "percale/parameters.h"
+
+using namespace percale;
+using namespace percale::viewer;
+
+namespace {
+
+Scene SmallScene() {
+  Scene scene;
+  ClothSettings cloth;
+  cloth.numWidthPoints = cloth.numHeightPoints = 12;
+  cloth.thickness = 0.01;
+  cloth.pinned = {{0, 0}, {11, 0}};
+  scene.cloths.push_back(cloth);
+  REQUIRE_FALSE(HasErrors(CheckScene(scene)));
+  return scene;
+}
+
+/// Waits until command `number` is carried out; returns what came of it.
+Executed WaitFor(Simulation& simulation, Snapshot& snapshot, std::uint64_t number) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (std::chrono::steady_clock::now() < deadline) {
+    if (simulation.TakeSnapshot(snapshot)) {
+      for (const Executed& done : snapshot.executed) {
+        if (done.command == number) return done;
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  FAIL("the command was not carried out");
+  return {};
+}
+
+std::uint64_t HashAfter(const Scene& scene, int frames) {
+  World world(scene, {.threads = 1});
+  for (int i = 0; i < frames; ++i) world.Step();
+  return world.StateHash();
+}
+
+}  // namespace
+
+TEST_CASE("it starts paused, with the start's state at hand") {
+  const Scene scene = SmallScene();
+  Simulation simulation(scene, {.threads = 1, .hashes = true});
+  Snapshot snapshot;
+  REQUIRE(simulation.TakeSnapshot(snapshot));
+  CHECK_FALSE(snapshot.running);
+  CHECK(snapshot.report.frame == 0);
+  CHECK(snapshot.hash == HashAfter(scene, 0));
+  REQUIRE(snapshot.cloths.size() == 1);
+  CHECK(snapshot.cloths[0].positions.size() == 144);
+  CHECK(snapshot.cloths[0].topology->springs.size() > 144);
+  CHECK_FALSE(simulation.TakeSnapshot(snapshot));
+}
+
+TEST_CASE("steps, reset and settings give what a World gives") {
+  Scene scene = SmallScene();
+  Simulation simulation(scene, {.threads = 1, .hashes = true});
+  Snapshot snapshot;
+  Executed done = WaitFor(simulation, snapshot, simulation.StepFrames(3));
+  CHECK(done.frame == 3);
+  CHECK(done.hash == HashAfter(scene, 3));
+  CHECK(snapshot.hash == done.hash);
+
+  World world(scene, {.threads = 1});
+  for (int i = 0; i < 3; ++i) world.Step();
+  scene.cloths[0].ks = 100;
+  world.Apply(scene);
+  world.Step();
+  done = WaitFor(simulation, snapshot, simulation.Apply(scene));
+  CHECK(done.stateKept);
+  CHECK(snapshot.scene->cloths[0].ks == 100);
+  done = WaitFor(simulation, snapshot, simulation.StepFrames(1));
+  CHECK(done.hash == world.StateHash());
+
+  done = WaitFor(simulation, snapshot, simulation.Reset());
+  CHECK_FALSE(done.stateKept);
+  CHECK(done.frame == 0);
+  CHECK(done.hash == HashAfter(scene, 0));
+
+  scene.cloths[0].numWidthPoints = 8;
+  scene.cloths[0].pinned.clear();
+  done = WaitFor(simulation, snapshot, simulation.Apply(scene));
+  CHECK_FALSE(done.stateKept);
+  CHECK(snapshot.cloths[0].positions.size() == 96);
+  CHECK(snapshot.cloths[0].topology->uv.size() == 96);
+}
+
+TEST_CASE("of settings that wait the newest alone acts, and order is kept") {
+  Scene scene = SmallScene();
+  Simulation simulation(scene, {.threads = 1, .hashes = true});
+  Snapshot snapshot;
+  simulation.StepFrames(40);  // Long enough for the others to queue up.
+  std::uint64_t last = 0;
+  for (int ks = 1; ks <= 50; ++ks) {
+    scene.cloths[0].ks = ks;
+    last = simulation.Apply(scene);
+  }
+  WaitFor(simulation, snapshot, last);
+  CHECK(snapshot.scene->cloths[0].ks == 50);
+  CHECK(snapshot.report.frame == 40);
+}
+
+TEST_CASE("springs that are switched off leave the copies") {
+  Scene scene = SmallScene();
+  Simulation simulation(scene, {.threads = 1});
+  Snapshot snapshot;
+  REQUIRE(simulation.TakeSnapshot(snapshot));
+  const auto before = snapshot.cloths[0].topology;
+  WaitFor(simulation, snapshot, simulation.Apply(scene));
+  CHECK(snapshot.cloths[0].topology == before);  // Nothing has changed: the same copy.
+  scene.cloths[0].enableShearing = false;
+  WaitFor(simulation, snapshot, simulation.Apply(scene));
+  CHECK(snapshot.cloths[0].topology->springs.size() == before->springs.size() - 2 * 11 * 11);
+}
+
+TEST_CASE("it runs in real time and pauses") {
+  Scene scene = SmallScene();
+  scene.simulation.framesPerSecond = 50;
+  scene.simulation.stepsPerFrame = 2;
+  std::atomic<int> told{0};
+  Simulation simulation(scene, {.threads = 1, .hashes = true, .onSnapshot = [&] { ++told; }});
+  Snapshot snapshot;
+  const auto begin = std::chrono::steady_clock::now();
+  WaitFor(simulation, snapshot, simulation.SetRunning(true));
+  while (snapshot.report.frame < 20) {
+    simulation.TakeSnapshot(snapshot);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  CHECK(time.count() > 18 / 50.0);  // Never faster than the scene says.
+  CHECK(told > 20);
+  WaitFor(simulation, snapshot, simulation.SetRunning(false));
+  CHECK_FALSE(snapshot.running);
+  const int frame = snapshot.report.frame;
+  CHECK(snapshot.hash == HashAfter(scene, frame));
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  CHECK_FALSE(simulation.TakeSnapshot(snapshot));
+}
+
+TEST_CASE("a divergence pauses it until the reset") {
+  Scene scene = SmallScene();
+  scene.cloths[0].ks = 1e9;
+  Simulation simulation(scene, {.threads = 1, .hashes = true});
+  Snapshot snapshot;
+  simulation.SetRunning(true);
+  for (int i = 0; i < 60000 && !snapshot.report.divergence; ++i) {
+    simulation.TakeSnapshot(snapshot);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  REQUIRE(snapshot.report.divergence);
+  CHECK_FALSE(snapshot.running);
+  for (const Vec3& p : snapshot.cloths[0].positions) CHECK(IsFinite(p));
+  WaitFor(simulation, snapshot, simulation.SetRunning(true));
+  CHECK_FALSE(snapshot.running);
+  scene.cloths[0].ks = 100;
+  simulation.Apply(scene);
+  WaitFor(simulation, snapshot, simulation.Reset());
+  CHECK_FALSE(snapshot.report.divergence);
+  CHECK(WaitFor(simulation, snapshot, simulation.StepFrames(2)).hash == HashAfter(scene, 2));
+}
+
+TEST_CASE("it ends whatever it is doing") {
+  for (int i = 0; i < 20; ++i) {
+    Simulation simulation(SmallScene(), {.threads = 1});
+    simulation.SetRunning(true);
+    simulation.StepFrames(5);
+  }
+}
