@@ -36,7 +36,9 @@ std::string_view StageName(Stage stage);
 
 /// Why a simulation had to stop.
 struct Divergence {
-  std::int64_t step = 0;  ///< The first step after which a position was out of bounds or not a number.
+  /// The first step after which a position was out of bounds or not a number; or the last step of
+  /// the frame in which a spring became a thousand times too long.
+  std::int64_t step = 0;
   int cloth = 0;
   int vertex = 0;
   std::string cause;   ///< "ks = 1e5 N/m is above the stable limit of 1459 N/m at this density and step"

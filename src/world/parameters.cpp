@@ -449,12 +449,26 @@ std::optional<std::vector<std::string_view>> Elements(std::string_view text) {
   return elements;
 }
 
+/// A number as people type it: as in JSON, or with a plus, without the zero before the point, or
+/// without digits behind it.
+std::optional<double> TypedNumber(std::string_view text) {
+  std::string number(text);
+  if (number.starts_with('+')) number.erase(0, 1);
+  const std::size_t begin = number.starts_with('-') ? 1 : 0;
+  if (number.substr(begin).starts_with('.')) number.insert(begin, "0");
+  const std::size_t point = number.find('.');
+  if (point != std::string::npos && point > begin && number.find_first_of("0123456789", point) != point + 1) {
+    number.insert(point + 1, "0");
+  }
+  return ParseNumber(number);
+}
+
 std::optional<std::vector<double>> Numbers(std::string_view text, std::size_t count) {
   const auto elements = Elements(text);
   if (!elements || elements->size() != count) return std::nullopt;
   std::vector<double> numbers;
   for (const std::string_view element : *elements) {
-    const auto number = ParseNumber(element);
+    const auto number = TypedNumber(element);
     if (!number) return std::nullopt;
     numbers.push_back(*number);
   }
@@ -471,7 +485,7 @@ std::optional<Value> ParseValue(const Parameter& p, std::string_view text) {
   switch (p.kind) {
     case ValueKind::Number:
     case ValueKind::Integer:
-      if (const auto number = ParseNumber(text)) return *number;
+      if (const auto number = TypedNumber(text)) return *number;
       return std::nullopt;
     case ValueKind::Boolean:
       if (text == "true" || text == "false") return text == "true";

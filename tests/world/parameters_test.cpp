@@ -172,6 +172,12 @@ TEST_CASE("An assignment sets what its path names") {
 
   REQUIRE(ApplyAssignment(scene, "wind.velocity=[2, 0,-1.5]"));
   CHECK(scene.wind.velocity == Vec3{2, 0, -1.5});
+  REQUIRE(ApplyAssignment(scene, "wind.velocity=[.5,-.25,+1.]"));  // as people type numbers
+  CHECK(scene.wind.velocity == Vec3{0.5, -0.25, 1});
+  for (const char* none :
+       {"wind.drag=.", "wind.drag=-", "wind.drag=1..2", "wind.drag=", "wind.drag=+-1", "wind.drag=.e3"}) {
+    CHECK_FALSE(ApplyAssignment(scene, none));
+  }
   REQUIRE(ApplyAssignment(scene, "simulation.self_collision=false"));
   CHECK_FALSE(scene.simulation.selfCollision);
   REQUIRE(ApplyAssignment(scene, "simulation.hash=powers"));
