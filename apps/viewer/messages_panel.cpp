@@ -26,16 +26,16 @@ ImVec4 ColorOf(const Message& message) {
 }
 
 const char* WordOf(const Message& message) {
-  if (message.over) return "over";
+  if (message.over) return "over:";
   switch (message.diagnostic.severity) {
     case Severity::Error:
-      return "error";
+      return "error:";
     case Severity::Warning:
-      return "warning";
+      return "warning:";
     case Severity::Note:
       break;
   }
-  return "note";
+  return "note:";
 }
 
 std::string PlaceText(const Place& place) {

@@ -28,7 +28,9 @@
 ///   panels   visible
 ///   help     visible
 ///   widget   name, x, y, width, height [screen units of the window]: where a control is drawn;
-///            again when it has moved, and with width 0 when it has gone
+///            again when it has moved, and with width 0 when it has gone. Names are those of --set:
+///            "cloth.ks" and "cloth.1.ks" are sliders, "cloth.ks box" the box to type in beside it,
+///            "look.shader" a drop-down, "look.shader/Phong" an entry of its list.
 ///   exit     code: the last line
 /// Hashes are 16 hexadecimal digits. Numbers of commands count from 1 (see simulation.h).
 

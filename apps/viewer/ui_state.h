@@ -4,6 +4,7 @@
 /// concerns the simulation.
 
 #include <array>
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -33,6 +34,10 @@ struct UiState {
   std::array<double, kStageCount> stageSeconds{};
   double frameSeconds = 0;
   double drawSeconds = 0;  ///< Of a picture and the panels [s].
+
+  /// What the pointer rests on, for its tooltip: the control's place, and since when [s].
+  float hoveredAt[2] = {-1, -1};
+  double hoveredSince = 0;
 
   std::size_t messagesSeen = 0;  ///< How long the list was when it was last drawn.
 

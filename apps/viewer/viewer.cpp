@@ -141,7 +141,9 @@ class Viewer {
     for (const InputEvent& event : events) {
       if (event.kind == InputEvent::Kind::Drop) session_.OpenScene(event.file);
       const bool isKey = event.kind == InputEvent::Kind::Character || event.kind == InputEvent::Kind::Special;
-      if (isKey && !typing) RunAction(event.character, event.special, event.repeated, session_, state_);
+      if (!isKey || typing) continue;
+      if (event.special == SpecialKey::Escape && Window::CloseLists()) continue;
+      RunAction(event.character, event.special, event.repeated, session_, state_);
     }
   }
 

@@ -17,7 +17,8 @@ namespace {
 // Columns of a row [screen unit at scale 1].
 constexpr float kSliderAt = 118, kSliderWidth = 100, kBoxWidth = 68, kGap = 5;
 constexpr float kTooltipWidth = 340;
-constexpr int kSliderDigits = 3;  // Significant ones that a slider sets.
+constexpr double kTooltipDelay = 0.35;  // [s]
+constexpr int kSliderDigits = 3;        // Significant ones that a slider sets.
 
 /// How a number is shown where that is not as the file states it.
 struct Shown {
@@ -34,7 +35,7 @@ const Shown* ShownOf(const Parameter& parameter) {
 }
 
 /// Units as people write them: "kg/(m^2 s)" becomes "kg/(m² s)".
-std::string UnitText(std::string_view unit) {
+std::string Readable(std::string_view unit) {
   std::string text;
   for (std::size_t i = 0; i < unit.size(); ++i) {
     if (unit.substr(i, 2) == "^2" || unit.substr(i, 2) == "^3") {
@@ -44,7 +45,7 @@ std::string UnitText(std::string_view unit) {
       text += unit[i];
     }
   }
-  return text == "degree" ? "\u00b0" : text;
+  return text;
 }
 
 double RoundToDigits(double value, int digits) {
@@ -57,13 +58,27 @@ double RoundToDigits(double value, int digits) {
   return rounded;
 }
 
-void PaddedLabel(const char* begin, const char* end) {
+/// The label of a row; what does not fit its column is cut off.
+void RowText(const UiState& state, std::string_view label) {
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(begin, end);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::PushClipRect({at.x, at.y}, {at.x + (kSliderAt - kGap / 2) * state.scale, at.y + 3 * ImGui::GetFrameHeight()},
+                      true);
+  ImGui::TextUnformatted(label.data(), label.data() + label.size());
+  ImGui::PopClipRect();
 }
 
-void Tooltip(const UiState& state, const std::string& text) {
-  if (!ImGui::IsItemHovered()) return;
+/// Shown when the pointer has rested on the last item for a moment, so that it does not hide what
+/// the user is about to do.
+void Tooltip(UiState& state, const std::string& text) {
+  if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;
+  const ImVec2 at = ImGui::GetItemRectMin();
+  if (at.x != state.hoveredAt[0] || at.y != state.hoveredAt[1]) {
+    state.hoveredAt[0] = at.x;
+    state.hoveredAt[1] = at.y;
+    state.hoveredSince = ImGui::GetTime();
+  }
+  if (ImGui::GetTime() - state.hoveredSince < kTooltipDelay) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(kTooltipWidth * state.scale);
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
@@ -93,7 +108,7 @@ NumberEdit NumberRow(const Session& session, UiState& state, const NumberSpec& s
   const float scale = state.scale;
   ImGui::PushID(spec.id.c_str());
   const float left = ImGui::GetCursorPosX();
-  PaddedLabel(spec.label.data(), spec.label.data() + spec.label.size());
+  RowText(state, spec.label);
   Tooltip(state, spec.help);
 
   if (spec.max > spec.min) {
@@ -143,9 +158,9 @@ NumberEdit NumberRow(const Session& session, UiState& state, const NumberSpec& s
 }
 
 /// Label of a row whose control is not a number; leaves the cursor at the control.
-void RowLabel(const UiState& state, std::string_view label, const std::string& help) {
+void RowLabel(UiState& state, std::string_view label, const std::string& help) {
   const float left = ImGui::GetCursorPosX();
-  PaddedLabel(label.data(), label.data() + label.size());
+  RowText(state, label);
   Tooltip(state, help);
   ImGui::SameLine(left + kSliderAt * state.scale);
   ImGui::SetNextItemWidth((kSliderWidth + kGap + kBoxWidth) * state.scale);
@@ -197,12 +212,12 @@ std::string HelpText(const Target& target) {
   std::string text(p.help);
   if (target.mixed) text += "\nThe cloths differ here; the first one's value is shown.";
   const std::string path = std::string(p.group) + "." + std::string(p.name);
-  text += "\n\n" + path + ": " + DescribeExpected(p) + "; by default " + FormatValue(DefaultValue(p));
+  text += "\n\n" + path + ": " + DescribeExpected(p) + "; by default " + FormatValue(DefaultValue(p)) + ".";
   if (const Shown* shown = ShownOf(p)) {
-    text += "\nShown in " + UnitText(shown->unit) + ", which is " + FormatNumber(shown->divisor) + " " +
-            UnitText(p.unit) + ".";
+    text += "\nShown in " + std::string(shown->unit) + ", which is " + FormatNumber(shown->divisor) + " " +
+            std::string(p.unit) + ".";
   }
-  return text;
+  return Readable(text);
 }
 
 std::string LabelText(const Target& target) {
@@ -212,7 +227,7 @@ std::string LabelText(const Target& target) {
 NumberSpec MakeSpec(const Target& target, double divisor) {
   const Parameter& p = target.parameter;
   const Shown* shown = ShownOf(p);
-  return {target.id,        LabelText(target),           UnitText(shown ? shown->unit : p.unit),
+  return {target.id,        LabelText(target),           Readable(shown ? shown->unit : p.unit),
           HelpText(target), p.typicalMin / divisor,      p.typicalMax / divisor,
           p.logarithmic,    p.kind == ValueKind::Integer};
 }

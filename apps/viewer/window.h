@@ -63,7 +63,9 @@ class Window {
 
   void BeginPanels();  ///< Starts a picture's panels: Dear ImGui may be called until EndPanels.
   void EndPanels();    ///< Draws them.
-  void Present();      ///< Shows the picture.
+  /// Closes lists that hang open. Returns whether there was one.
+  static bool CloseLists();
+  void Present();  ///< Shows the picture.
 
   bool ShouldClose() const;
   bool Minimized() const;

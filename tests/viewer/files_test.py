@@ -31,6 +31,16 @@ class Shaders(ViewerTest):
             # Each has drawn at least one picture without complaint.
             self.assertEqual(viewer.count("message"), 0, viewer.stderr())
 
+    def test_escape_closes_an_open_list_first(self):
+        with self.viewer(scene("sphere")) as viewer:
+            viewer.click("look.shader")
+            viewer.box("look.shader/Phong")
+            since = viewer.mark()
+            viewer.xdotool("key", "Escape")
+            viewer.wait("widget", since, name="look.shader/Phong", width=0)
+            viewer.xdotool("key", "Escape")
+            self.assertEqual(viewer.ended(), 0)
+
     def test_drop_down(self):
         with self.viewer(scene("sphere")) as viewer:
             viewer.click("look.shader")

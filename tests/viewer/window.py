@@ -222,13 +222,19 @@ class Viewer:
         self.xdotool("click", 1)
 
     def type_number(self, name, text):
-        """Types into the box beside a slider."""
+        """Types into the box beside a slider, and waits until it has been taken or refused."""
         self.click(name + " box")
         self.xdotool("type", "--delay", "60", "--", text)
-        # A key counts for the box only if it is down while a picture is made.
+        since = self.mark()
+        # Enter counts for the box only if it is down while a picture is made.
         self.xdotool("keydown", "Return")
-        time.sleep(0.15)
-        self.xdotool("keyup", "Return")
+        try:
+            def probe():
+                self.update()
+                return any(event["event"] in ("set", "message") for event in self.events[since:])
+            wait_for(f"{name} to take {text!r}", probe)
+        finally:
+            self.xdotool("keyup", "Return")
 
     def close_window(self):
         """What a window manager sends when the user closes the window."""
