@@ -61,7 +61,7 @@ class Keys(ViewerTest):
         with self.viewer(scene("pinned2"), "--set", "simulation.steps_per_frame=1", "--set", "cloth.ks=100") as viewer:
             since = viewer.key("p", "pause")
             first = viewer.wait("state", since, where=lambda state: state["frame"] > 10)
-            last = viewer.wait("state", since, where=lambda state: state["frame"] > 100)
+            last = viewer.wait("state", since, where=lambda state: state["frame"] > 250)
             rate = (last["frame"] - first["frame"]) / (last["t"] - first["t"])
             # Never faster than 90 frames per second, but for what is made up for.
             self.assertLess(rate, 90 * 1.1 + 5)
@@ -209,8 +209,8 @@ class Settings(ViewerTest):
                     viewer.key("bracketright", "next_shader")
                 taken = [event["t"] for event in viewer.events[since:] if event["event"] == "shader"]
                 self.assertEqual(len(taken), 4)
-                frames = viewer.state()["frame"] - slow["frame"]
-                self.assertLess(frames, (taken[-1] - slow["t"]) * 90)
+                later = viewer.wait("state", len(viewer.events), where=lambda state: state["frame"] > slow["frame"] + 2)
+                self.assertGreater(later["drawn"] - slow["drawn"], 2 * (later["frame"] - slow["frame"]))
                 viewer.key("p", "pause")
                 viewer.settle()
 
