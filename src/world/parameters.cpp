@@ -452,13 +452,15 @@ std::optional<std::vector<std::string_view>> Elements(std::string_view text) {
 /// A number as people type it: as in JSON, or with a plus, without the zero before the point, or
 /// without digits behind it.
 std::optional<double> TypedNumber(std::string_view text) {
+  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
   std::string number(text);
-  if (number.starts_with('+')) number.erase(0, 1);
-  const std::size_t begin = number.starts_with('-') ? 1 : 0;
-  if (number.substr(begin).starts_with('.')) number.insert(begin, "0");
+  if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.erase(0, 1);
   const std::size_t point = number.find('.');
-  if (point != std::string::npos && point > begin && number.find_first_of("0123456789", point) != point + 1) {
-    number.insert(point + 1, "0");
+  if (point != std::string::npos) {
+    const bool before = point > 0 && isDigit(number[point - 1]);
+    const bool behind = point + 1 < number.size() && isDigit(number[point + 1]);
+    if (before && !behind) number.insert(point + 1, "0");
+    if (behind && !before) number.insert(point, "0");
   }
   return ParseNumber(number);
 }
