@@ -169,11 +169,12 @@ class Viewer {
     }
     SmoothTimes();
 
-    // ImGui learns first where the pointer is, then whose the clicks are can be told.
     window_.BeginPanels();
     const std::vector<InputEvent> events = window_.TakeEvents();
-    for (const InputEvent& event : events)
-      hand_.Take(event, !ImGui::GetIO().WantCaptureMouse, PictureWidth(), height_, session_);
+    // Whose a press is depends on where it was made, not on where the pointer is by now.
+    for (const InputEvent& event : events) {
+      hand_.Take(event, !Window::OverPanels(event.x, event.y), PictureWidth(), height_, session_);
+    }
     HandleKeys(events);
     state_.boxes.clear();
     DrawPanels();

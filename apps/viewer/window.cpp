@@ -96,6 +96,8 @@ struct Window::Callbacks {
     InputEvent event;
     event.kind = InputEvent::Kind::Wheel;
     event.steps = steps;
+    event.x = Of(window).x;
+    event.y = Of(window).y;
     Add(window, event);
   }
   static void Drop(GLFWwindow* window, int count, const char** files) {
@@ -263,6 +265,16 @@ void Window::BeginPanels() {
 void Window::EndPanels() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool Window::OverPanels(double x, double y) {
+  if (GImGui->OpenPopupStack.Size > 0) return true;
+  const ImVec2 point(static_cast<float>(x), static_cast<float>(y));
+  for (const ImGuiWindow* window : GImGui->Windows) {
+    const bool shown = window->WasActive && !window->Hidden && !(window->Flags & ImGuiWindowFlags_NoMouseInputs);
+    if (shown && window->Rect().Contains(point)) return true;
+  }
+  return false;
 }
 
 bool Window::CloseLists() {

@@ -28,7 +28,7 @@ struct InputEvent {
     Press,      ///< Of a mouse button, at (x, y).
     Release,
     Move,   ///< The pointer is at (x, y) now.
-    Wheel,  ///< By `steps`.
+    Wheel,  ///< By `steps`, at (x, y).
     Drop,   ///< Of `file` onto the window.
   } kind = Kind::Move;
   char character = 0;
@@ -63,6 +63,9 @@ class Window {
 
   void BeginPanels();  ///< Starts a picture's panels: Dear ImGui may be called until EndPanels.
   void EndPanels();    ///< Draws them.
+  /// Whether a point of the window [screen unit] is over a panel, or a list that hangs open will take
+  /// the press; as of the panels of the last picture.
+  static bool OverPanels(double x, double y);
   /// Closes lists that hang open. Returns whether there was one.
   static bool CloseLists();
   void Present();  ///< Shows the picture.

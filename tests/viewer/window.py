@@ -76,7 +76,8 @@ class Viewer:
         self.environment = {**os.environ, "DISPLAY": display.name, **(environment or {})}
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.errors = open(os.path.join(self.folder, "stderr"), "w+", encoding="utf-8", errors="replace")
-        self.process = subprocess.Popen([PERCALE, "view", *arguments, "--log", self.log], env=self.environment,
+        root = [] if "-r" in arguments else ["-r", ROOT]
+        self.process = subprocess.Popen([PERCALE, "view", *arguments, *root, "--log", self.log], env=self.environment,
                                         cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                         stderr=self.errors)
         self.events = []

@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
-from window import PERCALE, Display, Viewer, ViewerTest, scene, wait_for
+from window import PERCALE, ROOT, Display, Viewer, ViewerTest, scene, wait_for
 
 
 class Opening(ViewerTest):
@@ -33,7 +33,8 @@ class Opening(ViewerTest):
             self.assertEqual((viewer.start["width"], viewer.start["height"]), (700, 500))
 
     def fails(self, code, *arguments, **environment):
-        done = subprocess.run([PERCALE, "view", scene("pinned2"), *arguments], capture_output=True, text=True,
+        root = [] if "-r" in arguments else ["-r", ROOT]
+        done = subprocess.run([PERCALE, "view", scene("pinned2"), *root, *arguments], capture_output=True, text=True,
                               env={**os.environ, "DISPLAY": self.display.name, **environment}, timeout=60)
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertEqual(done.stdout, "")
