@@ -4,6 +4,7 @@
 #include <thread>
 
 #if defined(PERCALE_PARALLEL_TBB)
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #elif defined(PERCALE_PARALLEL_STD)
@@ -15,8 +16,13 @@ namespace percale {
 
 #if defined(PERCALE_PARALLEL_TBB)
 struct Executor::Backend {
-  explicit Backend(int threads) : arena(threads) {}
-  mutable tbb::task_arena arena;
+  explicit Backend(int threads)
+      : control(tbb::global_control::max_allowed_parallelism,
+                std::max(static_cast<std::size_t>(threads),
+                         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
+        arena(threads) {}
+  tbb::global_control control;  // TBB warns of arenas larger than the machine unless they are allowed
+  tbb::task_arena arena;
 };
 #else
 struct Executor::Backend {

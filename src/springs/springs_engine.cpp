@@ -153,6 +153,7 @@ void SpringsEngine::Configure(const Scene& scene) {
       if (named || motion.points.empty()) pinMotionOf_.push_back(static_cast<int>(m));
     }
     pin.motionCount = static_cast<int>(pinMotionOf_.size()) - pin.firstMotion;
+    pin.previousTarget = pin.target;  // a pin that is no longer carried stands still
   }
 }
 
