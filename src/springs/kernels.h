@@ -77,7 +77,7 @@ struct ColliderArgs {
 
 struct Kernels {
   const char* name;
-  /// Returns the number of points out of bounds.
+  /// Returns 0 when every point stays within bounds.
   std::int64_t (*integrate)(const IntegrateArgs&);
   /// Returns the number of springs marked. Marks are conservative: measure before you shorten.
   std::int64_t (*markLongSprings)(const LongSpringsArgs&);

@@ -162,25 +162,31 @@ class Integrator {
   /// Verlet for four points of the row that moves.
   PERCALE_INLINE void MoveBlock(int i) {
     const std::int64_t at = static_cast<std::int64_t>(moving_) * n_ + i;
-    const Pack bound = All(args_.bound);
     for (int axis = 0; axis < 3; ++axis) {
-      Pack sum = Load(force_[moving_ % 3][axis] + i);
-      if (withTwoUp_) sum = sum - Load(spring_[kTwoUp][axis] + i);
-      const Pack x = Load(args_.x[axis] + at);
-      const Pack next = x + All(args_.keep) * (x - Load(args_.previous[axis] + at)) + All(args_.forceToWay) * sum;
-      const unsigned good = Bits((next <= bound) & (All(-args_.bound) <= next));
+      double* previous = args_.previous[axis] + at;
       if (i + kLanes <= n_) {
-        Store(args_.previous[axis] + at, next);
-        outOfBounds_ += good != 15u;
-        continue;
-      }
-      double lanes[kLanes];
-      Store(lanes, next);
-      for (int lane = 0; i + lane < n_; ++lane) {
-        args_.previous[axis][at + lane] = lanes[lane];
-        outOfBounds_ += !(good >> lane & 1u);
+        const Pack next = Moved(axis, i, at, Load(previous));
+        Store(previous, next);
+        outOfBounds_ += InBounds(next) != 15u;
+      } else {
+        // What lies beyond the row may be another thread's, which is writing it: not even to be read.
+        const int count = n_ - i;
+        const Pack next = Moved(axis, i, at, LoadFirst(previous, count));
+        StoreFirst(previous, next, count);
+        outOfBounds_ += (InBounds(next) | (15u << count & 15u)) != 15u;
       }
     }
+  }
+  /// Where four points go that were at `before` one step ago.
+  PERCALE_INLINE Pack Moved(int axis, int i, std::int64_t at, Pack before) const {
+    Pack sum = Load(force_[moving_ % 3][axis] + i);
+    if (withTwoUp_) sum = sum - Load(spring_[kTwoUp][axis] + i);
+    const Pack x = Load(args_.x[axis] + at);
+    return x + All(args_.keep) * (x - before) + All(args_.forceToWay) * sum;
+  }
+  /// A bit for each of four coordinates that is within bounds.
+  PERCALE_INLINE unsigned InBounds(Pack next) const {
+    return Bits((next <= All(args_.bound)) & (All(-args_.bound) <= next));
   }
 
   const IntegrateArgs args_;
