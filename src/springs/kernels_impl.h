@@ -19,7 +19,6 @@ namespace {
 
 #if defined(_MSC_VER)
 #define PERCALE_RESTRICT __restrict
-#define PERCALE_INLINE __forceinline
 inline double Sqrt(double v) {
   return ::sqrt(v);
 }
@@ -30,7 +29,6 @@ inline int LowestBit(std::uint64_t bits) {
 }
 #else
 #define PERCALE_RESTRICT __restrict__
-#define PERCALE_INLINE __attribute__((always_inline)) inline
 inline double Sqrt(double v) {
   return __builtin_sqrt(v);
 }
@@ -188,18 +186,18 @@ std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
   for (std::int64_t p = begin; p < end; ++p) a.longKinds[p] = 0;
   std::int64_t total = 0;
   for (std::int64_t p = begin; p < end; p += kLanes) {
-    // The last block overlaps the one before it: marking twice does no harm.
-    const std::int64_t at = p + kLanes <= end ? p : end - kLanes;
-    const Pack3 x = Load3(a.x, at);
+    const Pack3 x = Load3(a.x, p);
     Mask longer[kKinds];
     for (int kind = 0; kind < kKinds; ++kind) {
-      const Pack longest = limit * Load(a.rest[kind] + at);
-      longer[kind] = SquaredLength(Load3(a.x, at + step[kind]) - x) > longest * longest;
+      const Pack longest = limit * Load(a.rest[kind] + p);
+      longer[kind] = SquaredLength(Load3(a.x, p + step[kind]) - x) > longest * longest;
     }
     if (Bits(longer[0] | longer[1] | longer[2] | longer[3] | longer[4] | longer[5]) == 0) continue;
+    // Lanes beyond the last row belong to others.
+    const unsigned own = end - p < kLanes ? (1u << (end - p)) - 1 : ~0u;
     for (int kind = 0; kind < kKinds; ++kind) {
-      for (unsigned bits = Bits(longer[kind]); bits != 0; bits &= bits - 1) {
-        a.longKinds[at + LowestBit(bits)] |= static_cast<std::uint8_t>(1u << kind);
+      for (unsigned bits = Bits(longer[kind]) & own; bits != 0; bits &= bits - 1) {
+        a.longKinds[p + LowestBit(bits)] |= static_cast<std::uint8_t>(1u << kind);
         ++total;
       }
     }
