@@ -42,6 +42,11 @@ ClothModel MakeGrid(const ClothSettings& settings) {
   return model;
 }
 
+double PointMass(const ClothSettings& cloth) {
+  const double points = static_cast<double>(cloth.numWidthPoints) * static_cast<double>(cloth.numHeightPoints);
+  return cloth.width * cloth.height * cloth.density / points;
+}
+
 bool Enabled(const ClothSettings& cloth, SpringKind kind) {
   switch (kind) {
     case SpringKind::Left:

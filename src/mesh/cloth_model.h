@@ -23,6 +23,9 @@ struct ClothModel {
 /// The regular grid of the classic simulator. `settings` must be valid.
 ClothModel MakeGrid(const ClothSettings& settings);
 
+/// Mass of one point of the cloth [kg].
+double PointMass(const ClothSettings& settings);
+
 /// The kinds of springs, in the order in which a point creates them.
 enum class SpringKind { Left, Up, UpperLeft, UpperRight, TwoLeft, TwoUp };
 inline constexpr int kSpringKinds = 6;

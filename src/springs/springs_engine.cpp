@@ -28,6 +28,14 @@ std::uint64_t Power(std::int64_t base, int exponent) {
   return result;
 }
 
+/// Point p of arrays with one axis each.
+Vec3 Get(const double* const axes[3], int p) {
+  return {axes[0][p], axes[1][p], axes[2][p]};
+}
+void Put(double* const axes[3], int p, const Vec3& at) {
+  axes[0][p] = at.x, axes[1][p] = at.y, axes[2][p] = at.z;
+}
+
 /// A box index, kept where a 64-bit integer can hold it.
 std::int64_t BoxIndex(double coordinate, double size) {
   return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / size), -1e15, 1e15));
@@ -40,50 +48,8 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
     : executor_(executor), kernels_(kernels) {
   int widest = 0;
   for (const ClothModel& model : models) {
-    Sheet sheet;
-    sheet.numWidth = model.numWidth;
-    sheet.numHeight = model.numHeight;
-    sheet.firstPoint = pointCount_;
-    pointCount_ += model.PointCount();
-    sheet.kinds.assign(Index(model.PointCount()), 0);
-    for (int kind = 0; kind < kSpringKinds; ++kind) {
-      const auto [di, dj] = kSpringSteps[kind];
-      sheet.rest[kind].assign(Index(model.PointCount() + kGridPad), kNoSpringRest);
-      for (int j = 0; j < model.numHeight; ++j) {
-        for (int i = 0; i < model.numWidth; ++i) {
-          if (i + di < 0 || i + di >= model.numWidth || j + dj < 0) continue;
-          const int p = j * model.numWidth + i;
-          sheet.kinds[Index(p)] |= static_cast<std::uint8_t>(1u << kind);
-          sheet.rest[kind][Index(p)] = Length(model.start[Index(p + dj * model.numWidth + di)] - model.start[Index(p)]);
-        }
-      }
-    }
-    for (int kind = 0; kind < kSpringKinds; ++kind) {
-      sheet.step[kind] = kSpringSteps[kind].dj * sheet.numWidth + kSpringSteps[kind].di;
-    }
-    for (int kind = 0; kind < kSpringKinds; ++kind) {
-      // The spring of kind `other` that ends at point e was created by e - step[other].
-      for (const int end : {0, sheet.step[kind]}) {
-        for (int other = 0; other < kSpringKinds; ++other) {
-          const int creator = end - sheet.step[other];
-          if (creator > 0) sheet.laterSprings[kind].push_back({creator, static_cast<std::uint8_t>(1u << other)});
-        }
-      }
-    }
-    sheet.kinds.resize(Index(model.PointCount() + 2 * model.numWidth + 2), 0);
-    widest = std::max(widest, sheet.numWidth);
-    sheet.rowsPerChunk = sheet.numHeight;
-    if (executor_.threads() > 1) {
-      sheet.rowsPerChunk = std::max(16, (kRowPointsPerChunk + sheet.numWidth - 1) / sheet.numWidth);
-    }
-    sheet.firstChunk = chunkCount_;
-    chunkCount_ += (sheet.numHeight + sheet.rowsPerChunk - 1) / sheet.rowsPerChunk;
-    start_.insert(start_.end(), model.start.begin(), model.start.end());
-    for (const std::int32_t pin : model.pinned) {
-      const Vec3 at = model.start[Index(pin)];
-      pins_.push_back({sheet.firstPoint + pin, at, at, at, 0, 0});
-    }
-    sheets_.push_back(std::move(sheet));
+    AddSheet(model);
+    widest = std::max(widest, model.numWidth);
   }
 
   const std::size_t count = Index(pointCount_);
@@ -109,6 +75,53 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
   Reset();
 }
 
+/// Appends a cloth: its points, springs, pins and chunks.
+void SpringsEngine::AddSheet(const ClothModel& model) {
+  Sheet sheet;
+  sheet.numWidth = model.numWidth;
+  sheet.numHeight = model.numHeight;
+  sheet.firstPoint = pointCount_;
+  pointCount_ += model.PointCount();
+  sheet.kinds.assign(Index(model.PointCount()), 0);
+  for (int kind = 0; kind < kSpringKinds; ++kind) {
+    const auto [di, dj] = kSpringSteps[kind];
+    sheet.rest[kind].assign(Index(model.PointCount() + kGridPad), kNoSpringRest);
+    for (int j = 0; j < model.numHeight; ++j) {
+      for (int i = 0; i < model.numWidth; ++i) {
+        if (i + di < 0 || i + di >= model.numWidth || j + dj < 0) continue;
+        const int p = j * model.numWidth + i;
+        sheet.kinds[Index(p)] |= static_cast<std::uint8_t>(1u << kind);
+        sheet.rest[kind][Index(p)] = Length(model.start[Index(p + dj * model.numWidth + di)] - model.start[Index(p)]);
+      }
+    }
+  }
+  for (int kind = 0; kind < kSpringKinds; ++kind) {
+    sheet.step[kind] = kSpringSteps[kind].dj * sheet.numWidth + kSpringSteps[kind].di;
+  }
+  for (int kind = 0; kind < kSpringKinds; ++kind) {
+    // The spring of kind `other` that ends at point e was created by e - step[other].
+    for (const int end : {0, sheet.step[kind]}) {
+      for (int other = 0; other < kSpringKinds; ++other) {
+        const int creator = end - sheet.step[other];
+        if (creator > 0) sheet.laterSprings[kind].push_back({creator, static_cast<std::uint8_t>(1u << other)});
+      }
+    }
+  }
+  sheet.kinds.resize(Index(model.PointCount() + 2 * model.numWidth + 2), 0);
+  sheet.rowsPerChunk = sheet.numHeight;
+  if (executor_.threads() > 1) {
+    sheet.rowsPerChunk = std::max(16, (kRowPointsPerChunk + sheet.numWidth - 1) / sheet.numWidth);
+  }
+  sheet.firstChunk = chunkCount_;
+  chunkCount_ += (sheet.numHeight + sheet.rowsPerChunk - 1) / sheet.rowsPerChunk;
+  start_.insert(start_.end(), model.start.begin(), model.start.end());
+  for (const std::int32_t pin : model.pinned) {
+    const Vec3 at = model.start[Index(pin)];
+    pins_.push_back({sheet.firstPoint + pin, at, at, at, 0, 0});
+  }
+  sheets_.push_back(std::move(sheet));
+}
+
 void SpringsEngine::Configure(const Scene& scene) {
   scene_ = scene;
   dt_ = scene_.TimeStep();
@@ -123,8 +136,7 @@ void SpringsEngine::Configure(const Scene& scene) {
                               : bending                                      ? kBendingShare * cloth.ks
                                                                              : cloth.ks;
     }
-    sheet.mass = cloth.width * cloth.height * cloth.density /
-                 (static_cast<double>(cloth.numWidthPoints) * cloth.numHeightPoints);
+    sheet.mass = PointMass(cloth);
     sheet.keep = 1 - cloth.damping / 100;
     width = std::max(width, kBoxesPerSpacing * cloth.width / cloth.numWidthPoints);
     height = std::max(height, kBoxesPerSpacing * cloth.height / cloth.numHeightPoints);
@@ -137,7 +149,7 @@ void SpringsEngine::Configure(const Scene& scene) {
   boxSize_[2] = std::max(width, height);
   bound_ = std::min(kBound, 0x1p50 * std::min(width, height));  // beyond it box indices would not be exact
   if (scene_.wind.drag > 0) {
-    for (auto& axis : windForce_) axis.resize(Index(pointCount_ + kGridPad));
+    for (auto& axis : windForce_) axis.resize(Index(pointCount_));
   }
 
   pinMotionOf_.clear();
@@ -158,9 +170,9 @@ void SpringsEngine::Configure(const Scene& scene) {
 }
 
 void SpringsEngine::Reset() {
-  for (std::size_t p = 0; p < start_.size(); ++p) {
-    const double at[3] = {start_[p].x, start_[p].y, start_[p].z};
-    for (int axis = 0; axis < 3; ++axis) positions_[axis][p] = previous_[axis][p] = at[axis];
+  for (int p = 0; p < pointCount_; ++p) {
+    Put(positions_, p, start_[Index(p)]);
+    Put(previous_, p, start_[Index(p)]);
   }
   for (PinnedPoint& pin : pins_) pin.target = pin.previousTarget = pin.start;
 }
@@ -204,18 +216,15 @@ void SpringsEngine::MoveColliders(double time) {
     }
     pin.previousTarget = pin.target;
     pin.target = pin.start + offset;
-    positions_[0][Index(pin.point)] = pin.target.x;
-    positions_[1][Index(pin.point)] = pin.target.y;
-    positions_[2][Index(pin.point)] = pin.target.z;
+    Put(positions_, pin.point, pin.target);
   }
 }
 
 void SpringsEngine::ComputeWind(double time) {
   const WindSettings& wind = scene_.wind;
   const Vec3 air = wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
-  const auto position = [&](int p) {
-    return Vec3{positions_[0][Index(p)], positions_[1][Index(p)], positions_[2][Index(p)]};
-  };
+  const auto position = [&](int p) { return Get(positions_, p); };
+  double* const windForces[3] = {windForce_[0].data(), windForce_[1].data(), windForce_[2].data()};
   ForRowChunks([&](const Sheet& sheet, int rowBegin, int rowEnd, int) {
     for (int j = rowBegin; j < rowEnd; ++j) {
       const int row = sheet.firstPoint + j * sheet.numWidth;
@@ -230,13 +239,10 @@ void SpringsEngine::ComputeWind(double time) {
         const double length = Length(normal);
         Vec3 force;
         if (length > 0) {
-          const Vec3 before{previous_[0][Index(p)], previous_[1][Index(p)], previous_[2][Index(p)]};
-          const Vec3 velocity = (position(p) - before) / dt_;
+          const Vec3 velocity = (position(p) - Get(previous_, p)) / dt_;
           force = normal * (0.25 * wind.drag * Dot(normal, air - velocity) / length);
         }
-        windForce_[0][Index(p)] = force.x;
-        windForce_[1][Index(p)] = force.y;
-        windForce_[2][Index(p)] = force.z;
+        Put(windForces, p, force);
       }
     }
   });
@@ -271,11 +277,7 @@ bool SpringsEngine::ApplyForces(double time) {
   });
   for (int axis = 0; axis < 3; ++axis) std::swap(positions_[axis], previous_[axis]);
   HoldPins(0, pointCount_);
-  for (const PinnedPoint& pin : pins_) {
-    previous_[0][Index(pin.point)] = pin.previousTarget.x;
-    previous_[1][Index(pin.point)] = pin.previousTarget.y;
-    previous_[2][Index(pin.point)] = pin.previousTarget.z;
-  }
+  for (const PinnedPoint& pin : pins_) Put(previous_, pin.point, pin.previousTarget);
   return SumChunkCounts(chunkCount_) == 0;
 }
 
@@ -283,11 +285,7 @@ bool SpringsEngine::ApplyForces(double time) {
 void SpringsEngine::HoldPins(int begin, int end) {
   const auto before = [](const PinnedPoint& pin, int point) { return pin.point < point; };
   auto pin = std::lower_bound(pins_.begin(), pins_.end(), begin, before);
-  for (; pin != pins_.end() && pin->point < end; ++pin) {
-    positions_[0][Index(pin->point)] = pin->target.x;
-    positions_[1][Index(pin->point)] = pin->target.y;
-    positions_[2][Index(pin->point)] = pin->target.z;
-  }
+  for (; pin != pins_.end() && pin->point < end; ++pin) Put(positions_, pin->point, pin->target);
 }
 
 void SpringsEngine::FindContacts() {
@@ -310,7 +308,6 @@ void SpringsEngine::FindContacts() {
     }
   });
   map_.Build(boxKeys_);
-  bucketChunkEnds_.clear();
   bucketChunkEnds_.clear();
   const std::span<const std::int32_t> first = map_.First();
   std::int32_t before = 0;
@@ -405,9 +402,8 @@ void SpringsEngine::LimitStrain() {
 /// marks the later springs there.
 void SpringsEngine::LimitSheet(const Sheet& sheet) {
   const int count = sheet.PointCount();
-  double* const x = positions_[0] + sheet.firstPoint;
-  double* const y = positions_[1] + sheet.firstPoint;
-  double* const z = positions_[2] + sheet.firstPoint;
+  double* const x[3] = {positions_[0] + sheet.firstPoint, positions_[1] + sheet.firstPoint,
+                        positions_[2] + sheet.firstPoint};
   std::uint8_t* const marks = longKinds_.data() + sheet.firstPoint;
   const std::uint8_t* const fixed = fixed_.data() + sheet.firstPoint;
   const std::uint8_t* const kinds = sheet.kinds.data();
@@ -419,12 +415,13 @@ void SpringsEngine::LimitSheet(const Sheet& sheet) {
       if (eight == 0) p += 7;
       continue;
     }
-    Vec3 creator{x[p], y[p], z[p]};
+    Vec3 creator = Get(x, p);
     for (int kind = 0; kind < kSpringKinds; ++kind) {
       if (!(marks[p] & 1u << kind)) continue;
       const int q = p + sheet.step[kind];
       const double limit = kStretchLimit * sheet.rest[kind][Index(p)];
-      const Vec3 d = Vec3{x[q], y[q], z[q]} - creator;
+      const Vec3 other = Get(x, q);
+      const Vec3 d = other - creator;
       const double squared = Dot(d, d);
       if (squared < limit * limit * (1 - 1e-12)) continue;  // surely short enough
       const double length = std::sqrt(squared);
@@ -433,14 +430,14 @@ void SpringsEngine::LimitSheet(const Sheet& sheet) {
       const double shareP = fixed[p] ? 0 : fixed[q] ? 1 : 0.5;
       const double shareQ = fixed[q] ? 0 : 1 - shareP;
       creator += shareP * excess;
-      x[q] -= shareQ * excess.x, y[q] -= shareQ * excess.y, z[q] -= shareQ * excess.z;
+      Put(x, q, other - shareQ * excess);
       ++limited;
       marks[p] |= static_cast<std::uint8_t>(kinds[p] & (~0u << (kind + 1)));
       for (const LaterSpring& later : sheet.laterSprings[kind]) {
         marks[p + later.creator] |= static_cast<std::uint8_t>(kinds[p + later.creator] & later.kindBit);
       }
     }
-    x[p] = creator.x, y[p] = creator.y, z[p] = creator.z;
+    Put(x, p, creator);
   }
   counts_.limitedSprings += limited;
 }
@@ -449,9 +446,9 @@ void SpringsEngine::ReadState(int cloth, std::span<Vec3> positions, std::span<Ve
   const Sheet& sheet = sheets_[Index(cloth)];
   assert(positions.size() == Index(sheet.PointCount()) && previous.size() == positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    const std::size_t p = Index(sheet.firstPoint) + v;
-    positions[v] = {positions_[0][p], positions_[1][p], positions_[2][p]};
-    previous[v] = {previous_[0][p], previous_[1][p], previous_[2][p]};
+    const int p = sheet.firstPoint + static_cast<int>(v);
+    positions[v] = Get(positions_, p);
+    previous[v] = Get(previous_, p);
   }
 }
 
@@ -462,9 +459,8 @@ Stretch SpringsEngine::GreatestStretch() const {
     for (int kind = 0; kind < kSpringKinds; ++kind) {
       for (int v = 0; v < sheet.PointCount(); ++v) {
         if (!(sheet.kinds[Index(v)] & 1u << kind)) continue;
-        const std::size_t p = Index(sheet.firstPoint + v), q = Index(sheet.firstPoint + v + sheet.step[kind]);
-        const Vec3 d{positions_[0][q] - positions_[0][p], positions_[1][q] - positions_[1][p],
-                     positions_[2][q] - positions_[2][p]};
+        const int p = sheet.firstPoint + v;
+        const Vec3 d = Get(positions_, p + sheet.step[kind]) - Get(positions_, p);
         const double rest = sheet.rest[kind][Index(v)];
         const double ratio = Dot(d, d) / (rest * rest);
         if (ratio > greatest.ratio) greatest = {ratio, {static_cast<int>(s), v}};

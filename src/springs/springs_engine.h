@@ -70,7 +70,6 @@ class SpringsEngine {
   void Collide();
   void LimitStrain();
 
-  int PointCount() const { return pointCount_; }
   /// What was done since the last call.
   EngineCounts TakeCounts() { return std::exchange(counts_, {}); }
 
@@ -81,8 +80,6 @@ class SpringsEngine {
   double Mass(int cloth) const { return sheets_[static_cast<std::size_t>(cloth)].mass; }
   /// The first point with a coordinate out of bounds.
   VertexRef FindOutOfBounds() const;
-  /// Buckets of the spatial map at the last step.
-  const BoxMap& map() const { return map_; }
 
  private:
   struct PinnedPoint {
@@ -93,6 +90,7 @@ class SpringsEngine {
     int firstMotion, motionCount;  // in pinMotionOf_
   };
 
+  void AddSheet(const ClothModel& model);
   void ComputeWind(double time);
   void HoldPins(int begin, int end);
   void LimitSheet(const Sheet& sheet);

@@ -7,11 +7,6 @@
 
 namespace percale {
 
-double PointMass(const ClothSettings& cloth) {
-  const double points = static_cast<double>(cloth.numWidthPoints) * static_cast<double>(cloth.numHeightPoints);
-  return cloth.width * cloth.height * cloth.density / points;
-}
-
 double LargestStableKs(const ClothSettings& cloth, double timeStep) {
   const double mass = PointMass(cloth);
   if (!(mass > 0)) return std::numeric_limits<double>::infinity();

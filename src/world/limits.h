@@ -3,12 +3,10 @@
 /// What a cloth's settings can be and still go well: warnings, the viewer and the report of a
 /// divergence name these limits.
 
+#include "mesh/cloth_model.h"
 #include "percale/scene.h"
 
 namespace percale {
-
-/// Mass of one point of the cloth [kg].
-double PointMass(const ClothSettings& cloth);
 
 /// The spring constant [N/m] from which the cloth blows up at a step of `timeStep` [s]. Verlet is
 /// stable while 8 ks dt^2 / m < 4: a point among its four neighbours swings at most with the square

@@ -41,7 +41,7 @@ class StageClock {
 
 /// Whether two scenes have the same cloths, apart from settings that act at once.
 bool SameCloths(const Scene& a, const Scene& b) {
-  if (a.cloths.size() != b.cloths.size() || a.simulation.engine != b.simulation.engine) return false;
+  if (a.simulation.engine != b.simulation.engine) return false;
   for (const Parameter& parameter : Parameters()) {
     if (parameter.effect != Effect::Rebuild) continue;
     const std::size_t count = FindGroup(parameter.group)->count(a);
@@ -59,6 +59,7 @@ struct World::Impl {
   Impl(Scene s, WorldOptions options) : executor(options.threads), scene(std::move(s)) { Build(); }
 
   void Build();
+  void Start();
   void ReadState();
   void FinishStep();
 
@@ -86,11 +87,18 @@ void World::Impl::Build() {
   cloths.clear();
   for (std::size_t c = 0; c < models.size(); ++c) {
     Cloth cloth;
-    cloth.positions = cloth.previous = cloth.lastFrame = models[c].start;
-    cloth.velocities.assign(cloth.positions.size(), Vec3{});
     cloth.springs = EnabledSprings(models[c], scene.cloths[c]);
     cloth.model = std::move(models[c]);
     cloths.push_back(std::move(cloth));
+  }
+  Start();
+}
+
+/// What the reader sees before the first frame.
+void World::Impl::Start() {
+  for (Cloth& cloth : cloths) {
+    cloth.positions = cloth.previous = cloth.lastFrame = cloth.model.start;
+    cloth.velocities.assign(cloth.positions.size(), Vec3{});
   }
   report = {};
   restFrames = 0;
@@ -148,13 +156,12 @@ const StepReport& World::Step() {
   const double dt = w.scene.TimeStep();
   clock.Finished(Stage::CheckInput);
 
-  bool inBounds = true;
-  for (int step = 0; step < w.scene.simulation.stepsPerFrame && inBounds; ++step) {
+  for (int step = 0; step < w.scene.simulation.stepsPerFrame; ++step) {
     ++report.step;
     report.time += dt;
     engine.moveColliders(state, report.time);
     clock.Finished(Stage::MoveColliders);
-    inBounds = engine.applyForces(state, report.time);
+    const bool inBounds = engine.applyForces(state, report.time);
     clock.Finished(Stage::ApplyForces);
     if (!inBounds) break;
     engine.findContacts(state);
@@ -187,12 +194,7 @@ void World::Reset() {
   Impl& w = *impl_;
   w.engine->reset(w.engineState.get());
   w.engine->takeCounts(w.engineState.get());
-  for (Impl::Cloth& cloth : w.cloths) {
-    cloth.positions = cloth.previous = cloth.lastFrame = cloth.model.start;
-    std::fill(cloth.velocities.begin(), cloth.velocities.end(), Vec3{});
-  }
-  w.report = {};
-  w.restFrames = 0;
+  w.Start();
 }
 
 bool World::Apply(Scene scene) {
