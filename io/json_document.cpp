@@ -561,6 +561,9 @@ Result<JsonDocument> JsonDocument::Load(const std::filesystem::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (status.type() == fs::file_type::not_found) {
+    if (const fs::path end = fs::read_symlink(file, error); !error) {
+      return MakeError(name, "this is a link to " + end.string() + ", and there is no such file");
+    }
     // The nearest name beside it, for slips of the finger.
     std::vector<std::string> names;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");

@@ -307,6 +307,13 @@ TEST_CASE("Files that cannot be read say so, with the nearest name") {
   if (!readable) CHECK(Contains(problem(file), "cannot be opened"));
   fs::permissions(file, fs::perms::owner_all);
   fs::remove(file);
+
+  const fs::path link = fs::temp_directory_path() / "percale_dangling_scene.json";
+  std::error_code error;
+  fs::remove(link);
+  fs::create_symlink("nowhere.json", link, error);  // not everyone may, on Windows
+  if (!error) CHECK(Contains(problem(link), "this is a link to nowhere.json, and there is no such file"));
+  fs::remove(link);
 }
 
 TEST_CASE("Origins name the place of what the file states, and nothing else") {
