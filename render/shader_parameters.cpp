@@ -20,7 +20,7 @@ std::string Trimmed(std::string_view text) {
 }
 
 bool ReadNumber(const std::string& word, float& number) {
-  const std::optional<double> value = ParseNumber(word);
+  const std::optional<double> value = ParseTypedNumber(word);
   if (value) number = static_cast<float>(*value);
   return value.has_value();
 }
@@ -32,21 +32,27 @@ std::vector<std::string> Words(const std::string& text) {
   return words;
 }
 
-// The numbers of an initialiser such as "0.5", "true" or "vec3(1, 0, 0)".
-std::vector<float> InitialiserNumbers(std::string text) {
-  std::vector<float> numbers;
+// The numbers of an initialiser such as "0.5", "1.f", "true", "vec3(1, 0, 0)" or "vec3(1)"; none if
+// it is anything else.
+std::vector<float> InitialiserNumbers(std::string text, const std::string& type, std::size_t components) {
+  text = Trimmed(text);
   if (const std::size_t open = text.find('('); open != std::string::npos) {
-    text = text.substr(open + 1, text.rfind(')') - open - 1);
+    if (Trimmed(text.substr(0, open)) != type || text.back() != ')') return {};
+    text = text.substr(open + 1, text.size() - open - 2);
   }
   std::replace(text.begin(), text.end(), ',', ' ');
-  for (const std::string& word : Words(text)) {
+  std::vector<float> numbers;
+  for (std::string& word : Words(text)) {
     float number = 0;
+    if (word.back() == 'f' || word.back() == 'F') word.pop_back();
     if (word == "true" || word == "false") {
-      numbers.push_back(word == "true" ? 1.0f : 0.0f);
-    } else if (ReadNumber(word, number)) {
-      numbers.push_back(number);
+      number = word == "true" ? 1.0f : 0.0f;
+    } else if (!ReadNumber(word, number)) {
+      return {};
     }
+    numbers.push_back(number);
   }
+  if (numbers.size() == 1) numbers.resize(components, numbers[0]);
   return numbers;
 }
 
@@ -113,7 +119,7 @@ std::vector<ShaderParameter> ParseShaderParameters(std::string_view text, const 
     }
     const std::size_t components = parameter.type == ShaderParameter::Type::Vector ? 3 : 1;
 
-    std::vector<float> defaults = InitialiserNumbers(declaration.initialiser);
+    std::vector<float> defaults = InitialiserNumbers(declaration.initialiser, declaration.type, components);
     const std::string& comment = declaration.comment;
     for (std::size_t at = comment.find('@'); at != std::string::npos;) {
       const std::size_t next = comment.find('@', at + 1);
@@ -170,7 +176,12 @@ std::vector<ShaderParameter> ParseShaderParameters(std::string_view text, const 
         warn("@" + key + " is unknown; expected @range, @default, @label, @help, @color or @choices");
       }
     }
-    if (defaults.size() != components) defaults.assign(components, parameter.min);
+    if (defaults.size() != components) {
+      if (!Trimmed(declaration.initialiser).empty()) {
+        warn("the initial value \"" + Trimmed(declaration.initialiser) + "\" is not read here; state it as @default");
+      }
+      defaults.assign(components, parameter.min);
+    }
     for (std::size_t i = 0; i < components; ++i) {
       parameter.defaultValue[i] = std::clamp(defaults[i], parameter.min, parameter.max);
     }

@@ -30,15 +30,8 @@ constexpr const char* kExitCodes =
   throw CLI::ValidationError(option, "expected " + expected + ", got " + Quote(found, 60));
 }
 
-std::optional<double> AnyNumber(std::string_view text) {
-  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
-  if (!text.empty() && text[0] == '.') return ParseNumber("0" + std::string(text));
-  if (text.substr(0, 2) == "-.") return ParseNumber("-0" + std::string(text.substr(1)));
-  return ParseNumber(text);
-}
-
 double Number(const std::string& option, const std::string& text, double min, double max, const std::string& expected) {
-  const auto number = AnyNumber(text);
+  const auto number = ParseTypedNumber(text);
   if (!number || *number < min || *number > max) Refuse(option, expected, text);
   return *number;
 }
@@ -178,7 +171,7 @@ class Builder {
     Call(app, "--samples",
          "Samples per pixel, which smooth edges: 1, 2, 4, 8 or 16; default 4, in the viewer 1 where the CPU draws", "N",
          "Picture", [this](const std::string& text) {
-           const auto number = AnyNumber(text);
+           const auto number = ParseTypedNumber(text);
            if (!number || (*number != 1 && *number != 2 && *number != 4 && *number != 8 && *number != 16)) {
              Refuse("--samples", "1, 2, 4, 8 or 16", text);
            }

@@ -140,7 +140,7 @@ NumberEdit NumberRow(const Session& session, UiState& state, const NumberSpec& s
   } else if (state.editedBox == id || ImGui::IsItemDeactivated()) {
     state.editedBox = 0;
     if (text != shown) {
-      const std::optional<double> number = ParseNumber(text);
+      const std::optional<double> number = ParseTypedNumber(text);
       if (number)
         edit.value = *number;
       else

@@ -22,6 +22,10 @@ double RoundDown(double number, int digits);
 /// beyond the range of double.
 std::optional<double> ParseNumber(std::string_view text);
 
+/// Reads a number as people type it: as in JSON, or with a plus, without the zero before the point,
+/// or without digits behind it.
+std::optional<double> ParseTypedNumber(std::string_view text);
+
 /// The text in double quotes as JSON writes it, control characters escaped. With `limit` > 0 at
 /// most that many bytes of the text (whole characters), then "...".
 std::string Quote(std::string_view text, std::size_t limit = 0);

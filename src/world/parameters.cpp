@@ -449,28 +449,12 @@ std::optional<std::vector<std::string_view>> Elements(std::string_view text) {
   return elements;
 }
 
-/// A number as people type it: as in JSON, or with a plus, without the zero before the point, or
-/// without digits behind it.
-std::optional<double> TypedNumber(std::string_view text) {
-  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
-  std::string number(text);
-  if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.erase(0, 1);
-  const std::size_t point = number.find('.');
-  if (point != std::string::npos) {
-    const bool before = point > 0 && isDigit(number[point - 1]);
-    const bool behind = point + 1 < number.size() && isDigit(number[point + 1]);
-    if (before && !behind) number.insert(point + 1, "0");
-    if (behind && !before) number.insert(point, "0");
-  }
-  return ParseNumber(number);
-}
-
 std::optional<std::vector<double>> Numbers(std::string_view text, std::size_t count) {
   const auto elements = Elements(text);
   if (!elements || elements->size() != count) return std::nullopt;
   std::vector<double> numbers;
   for (const std::string_view element : *elements) {
-    const auto number = TypedNumber(element);
+    const auto number = ParseTypedNumber(element);
     if (!number) return std::nullopt;
     numbers.push_back(*number);
   }
@@ -487,7 +471,7 @@ std::optional<Value> ParseValue(const Parameter& p, std::string_view text) {
   switch (p.kind) {
     case ValueKind::Number:
     case ValueKind::Integer:
-      if (const auto number = TypedNumber(text)) return *number;
+      if (const auto number = ParseTypedNumber(text)) return *number;
       return std::nullopt;
     case ValueKind::Boolean:
       if (text == "true" || text == "false") return text == "true";

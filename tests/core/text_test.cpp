@@ -40,6 +40,19 @@ TEST_CASE("Numbers are written as people write them") {
   CHECK(FormatNumber(std::nan("")) == "NaN");
 }
 
+TEST_CASE("Numbers are read as people type them") {
+  const std::pair<const char*, double> cases[] = {{".5", 0.5}, {"-.5", -0.5},  {"+.5", 0.5},   {"1.", 1},
+                                                  {"+5", 5},   {"1.e3", 1000}, {"-1.5", -1.5}, {"5e3", 5000}};
+  for (const auto& [text, number] : cases) {
+    CAPTURE(text);
+    REQUIRE(ParseTypedNumber(text).has_value());
+    CHECK(*ParseTypedNumber(text) == number);
+  }
+  for (const char* bad : {"", ".", "-", "+", "+-1", "-+1", "-.", "1e", ".e3", "1..", "1,5", "nan", "5k", "0x1"}) {
+    CHECK_MESSAGE(!ParseTypedNumber(bad).has_value(), bad);
+  }
+}
+
 TEST_CASE("Only JSON's numbers are numbers") {
   for (const char* good : {"0", "-1", "2.5", "1e3", "1E+3", "-0.5e-2", "123456789012345678901234567890"}) {
     CHECK_MESSAGE(ParseNumber(good).has_value(), good);

@@ -43,6 +43,29 @@ TEST_CASE("comments behind uniforms make parameters") {
   CHECK(parameters[4].defaultValue == UniformValue{1, -2, 0.5f});
 }
 
+TEST_CASE("numbers are read as GLSL writes them") {
+  const std::pair<const char*, UniformValue> cases[] = {
+      {"uniform float u_a = .5; // @range 0 1", {0.5f}},
+      {"uniform float u_a = 1.; // @range 0. 4.", {1}},
+      {"uniform float u_a = 0.25f; // @range .0 +1", {0.25f}},
+      {"uniform float u_a; // @range 0 1 @default .5", {0.5f}},
+      {"uniform vec3 u_a = vec3(.5); // @color", {0.5f, 0.5f, 0.5f}},
+      {"uniform vec3 u_a = vec3 ( 1., .5, 0 ); // @color", {1, 0.5f, 0}},
+      {"uniform bool u_a = true; // @label A", {1}},
+      {"uniform float u_a = sqrt(2.0); // @range 0 2 @default 1.4142", {1.4142f}},
+  };
+  for (const auto& [source, value] : cases) {
+    const std::string line = source;
+    CAPTURE(line);
+    Diagnostics diagnostics;
+    const auto parameters = Parse(line, diagnostics);
+    INFO(Format(diagnostics));
+    CHECK(diagnostics.empty());
+    REQUIRE(parameters.size() == 1);
+    CHECK(parameters[0].defaultValue == value);
+  }
+}
+
 TEST_CASE("annotations that make no sense are named with their line") {
   const std::pair<const char*, const char*> cases[] = {
       {"uniform float u_a; // @range 3 1", "two growing numbers"},
@@ -54,6 +77,8 @@ TEST_CASE("annotations that make no sense are named with their line") {
       {"uniform mat4 u_a; // @range 0 1", "found mat4"},
       {"uniform float u_a; // @range 0 1 @default 7", "outside of the range"},
       {"uniform float u_a; // @range 0 nan", "two growing numbers"},
+      {"uniform float u_a = sqrt(2.0); // @range 0 2", "\"sqrt(2.0)\" is not read here"},
+      {"uniform float u_a = 1.0 / 3.0; // @range 0 2", "state it as @default"},
   };
   for (const auto& [source, message] : cases) {
     const std::string line = source;

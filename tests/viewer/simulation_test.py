@@ -131,6 +131,10 @@ class Settings(ViewerTest):
             since = viewer.mark()
             viewer.type_number("cloth.density", "5")
             self.assertEqual(self.set_path(viewer, since, "/cloth/0/density")["value"], 50)
+            for text, value in ((".5", 0.5), ("+.25", 0.25), ("1.", 1)):
+                since = viewer.mark()
+                viewer.type_number("cloth.damping", text)
+                self.assertEqual(self.set_path(viewer, since, "/cloth/0/damping")["value"], value)
             # Letters that are keys elsewhere are text here.
             self.assertEqual(viewer.count("action"), 0)
 
