@@ -1,8 +1,10 @@
 // The only file that includes CLI11, which takes seconds to compile.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 
 #include "apps/cli/options.h"
@@ -352,20 +354,32 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   verb(Verb::Version, "Prints the version", "  percale version\n");
 }
 
-void CollectNames(const CLI::App& app, std::vector<std::string>& names) {
+std::vector<std::string> OptionNames(const CLI::App& app) {
+  std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
   }
+  return names;
 }
 
-std::string UnknownArgument(const CLI::App& app, const std::string& argument) {
+/// `verb` is the one that was given, or null.
+std::string UnknownArgument(const CLI::App& app, const CLI::App* verb, const std::string& argument) {
   if (argument.empty() || argument[0] != '-') {
     return "unexpected argument " + Quote(argument, 60) + "; a file name with spaces needs quotes";
   }
-  std::vector<std::string> names;
-  CollectNames(app, names);
-  for (const CLI::App* sub : app.get_subcommands()) CollectNames(*sub, names);
   const std::string name = argument.substr(0, argument.find('='));
+  std::string owners;
+  for (const CLI::App* other : app.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::vector<std::string> theirs = OptionNames(*other);
+    if (std::find(theirs.begin(), theirs.end(), name) == theirs.end()) continue;
+    owners += (owners.empty() ? "" : ", ") + other->get_name();
+  }
+  if (!owners.empty()) {
+    return name + (verb ? " is no option of " + verb->get_name() + "; it belongs to " + owners
+                        : " needs a verb before it: " + owners);
+  }
+  const std::vector<std::string> names = OptionNames(verb ? *verb : app);
   const std::vector<std::string_view> views(names.begin(), names.end());
   return "unknown option " + name + DidYouMean(name, views);
 }
@@ -374,6 +388,12 @@ int UsageError(const std::string& message, const std::string& verb) {
   std::fprintf(stderr, "percale: error: %s\nTry: percale %s%s--help\n", message.c_str(), verb.c_str(),
                verb.empty() ? "" : " ");
   return kUsage;
+}
+
+std::string VerbList() {
+  std::string list;
+  for (const std::string_view verb : kVerbs) list += (list.empty() ? "" : ", ") + std::string(verb);
+  return list;
 }
 
 /// What is wrong between options, or nothing.
@@ -396,6 +416,10 @@ std::variant<Options, int> ParseCommandLine(const std::vector<std::string>& argu
   std::vector<std::string> rest = arguments;
   if (!rest.empty() && rest[0] == "help") {  // percale help [VERB]
     rest.erase(rest.begin());
+    if (!rest.empty() && std::find(std::begin(kVerbs), std::end(kVerbs), rest[0]) == std::end(kVerbs)) {
+      return UsageError(
+          "there is no verb " + Quote(rest[0], 60) + DidYouMean(rest[0], kVerbs) + "; the verbs are " + VerbList(), {});
+    }
     rest.insert(rest.begin() + (rest.empty() ? 0 : 1), "--help");
   }
 
@@ -435,7 +459,7 @@ std::variant<Options, int> ParseCommandLine(const std::vector<std::string>& argu
       return UsageError("there is no verb " + Quote(positional, 60) + DidYouMean(positional, kVerbs), {});
     }
     if (dynamic_cast<const CLI::ExtrasError*>(&error) && !extras.empty())
-      return UsageError(UnknownArgument(app, extras[0]), verb);
+      return UsageError(UnknownArgument(app, subs.empty() ? nullptr : subs[0], extras[0]), verb);
     return UsageError(error.what(), verb);
   }
 
@@ -456,10 +480,8 @@ std::variant<Options, int> ParseCommandLine(const std::vector<std::string>& argu
       options.scene.find_first_of("./\\") == std::string::npos) {
     std::error_code ignored;
     if (!std::filesystem::exists(TextPath(options.scene), ignored)) {
-      std::string list;
-      for (const std::string_view known : kVerbs) list += (list.empty() ? "" : ", ") + std::string(known);
       return UsageError("there is no verb and no scene file " + Quote(options.scene, 60) +
-                            DidYouMean(options.scene, kVerbs) + "; the verbs are " + list,
+                            DidYouMean(options.scene, kVerbs) + "; the verbs are " + VerbList(),
                         {});
     }
   }

@@ -22,11 +22,16 @@ class Usage(ProgramTest):
         self.usage("simulat", expect="did you mean `simulate`?")
         self.usage("rendr", "x.json", expect="did you mean `render`?")
         self.usage("frobnicate", expect="the verbs are view, simulate")
+        self.usage("help", "sho", expect="did you mean `shot`?")
 
     def test_wrong_options(self):
         self.usage("simulate", "--frmaes", 3, expect="did you mean `--frames`?")
         self.usage("shot", "--shadr", "Phong", expect="did you mean `--shader`?")
         self.usage("--nonsense", expect="--nonsense")
+        # Where an option does exist, it is not its spelling that is wrong.
+        self.usage("simulate", "--shader", "Phong", expect="no option of simulate; it belongs to view, shot, render")
+        self.usage("a.json", "--seconds", 3, expect="--seconds needs a verb before it: simulate, shot, render")
+        self.usage("shot", "--frames", 3, expect="no option of shot; it belongs to simulate, render, bench")
         self.usage("simulate", "a.json", "b.json", expect='"b.json"')
         self.usage("simulate", "a.json", "-f", "b.json", expect="two scenes")
 
