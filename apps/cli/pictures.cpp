@@ -18,7 +18,15 @@ namespace fs = std::filesystem;
 /// Compression of single pictures: nearly as small as 9, much faster.
 constexpr int kPngLevel = 6;
 
-/// Checks the uniforms of the command line against the shader's parameters, and enters them.
+}  // namespace
+
+View MakeView(const Options& options, const Scene& scene) {
+  View view = View::ForScene(SeenScene(options, scene));
+  view.sphereLatitudes = options.latitudes;
+  view.sphereLongitudes = options.longitudes;
+  return view;
+}
+
 int ApplyUniforms(const Options& options, std::span<const ShaderParameter> parameters, View& view) {
   std::vector<std::string_view> names;
   for (const ShaderParameter& parameter : parameters) names.push_back(parameter.name);
@@ -53,25 +61,6 @@ int ApplyUniforms(const Options& options, std::span<const ShaderParameter> param
     view.uniforms[found->name] = value;
   }
   return kDone;
-}
-
-}  // namespace
-
-View MakeView(const Options& options, const Scene& scene) {
-  Scene seen = scene;
-  if (options.azimuth || options.target) {
-    CameraSettings camera = OrbitCamera::ForScene(scene).Settings();
-    camera.automatic = false;
-    if (options.azimuth) camera.azimuth = *options.azimuth;
-    if (options.elevation) camera.elevation = *options.elevation;
-    if (options.distance) camera.distance = *options.distance;
-    if (options.target) camera.target = {(*options.target)[0], (*options.target)[1], (*options.target)[2]};
-    seen.camera = camera;
-  }
-  View view = View::ForScene(seen);
-  view.sphereLatitudes = options.latitudes;
-  view.sphereLongitudes = options.longitudes;
-  return view;
 }
 
 std::variant<Studio, int> OpenStudio(const Options& options, const Session& session) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "apps/cli/options.h"
@@ -16,6 +17,10 @@ namespace percale::cli {
 
 /// The view of the scene with the command line's choices. Fails on a camera that cannot be.
 View MakeView(const Options& options, const Scene& scene);
+
+/// Enters the command line's --uniform into the view, if they fit the parameters of its shader. Returns
+/// the exit code.
+int ApplyUniforms(const Options& options, std::span<const ShaderParameter> parameters, View& view);
 
 /// A painter and its view.
 struct Studio {

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "percale/parameters.h"
+#include "render/camera.h"
 
 namespace percale::cli {
 namespace {
@@ -115,9 +116,12 @@ std::variant<Session, int> OpenSession(const Options& options) {
       PrintDiagnostics(errors);
       return kUsage;
     }
-    for (const std::string& path : *paths) session.assignments[path] = assignment;
+    for (const std::string& path : *paths) session.assignments[path] = "--set " + ShellWord(assignment);
   }
-  if (!options.shader.empty()) session.scene.look.shader = options.shader;
+  if (!options.shader.empty()) {
+    session.scene.look.shader = options.shader;
+    session.assignments["/look/shader"] = "--shader " + ShellWord(options.shader);
+  }
   if (!options.set.empty()) {
     // What the file's warnings said may no longer hold.
     warnings = CheckScene(session.scene);
@@ -128,13 +132,31 @@ std::variant<Session, int> OpenSession(const Options& options) {
   PrintDiagnostics(warnings);
   if (HasErrors(warnings)) return kInvalid;
   if (options.printConfig) {
-    PrintConfiguration(session);
+    PrintConfiguration(options, session);
     return kDone;
   }
   return session;
 }
 
-void PrintConfiguration(const Session& session) {
+Scene SeenScene(const Options& options, const Scene& scene) {
+  Scene seen = scene;
+  if (!options.azimuth && !options.target) return seen;
+  CameraSettings camera = OrbitCamera::ForScene(scene).Settings();
+  camera.automatic = false;
+  if (options.azimuth) camera.azimuth = *options.azimuth;
+  if (options.elevation) camera.elevation = *options.elevation;
+  if (options.distance) camera.distance = *options.distance;
+  if (options.target) camera.target = {(*options.target)[0], (*options.target)[1], (*options.target)[2]};
+  seen.camera = camera;
+  return seen;
+}
+
+void PrintConfiguration(const Options& options, const Session& session) {
+  const Scene scene = SeenScene(options, session.scene);
+  std::map<std::string, std::string> assignments = session.assignments;
+  if (options.azimuth) assignments["/camera/azimuth"] = assignments["/camera/elevation"] = "--camera";
+  if (options.distance) assignments["/camera/distance"] = "--camera";
+  if (options.target) assignments["/camera/target"] = "--target";
   struct Row {
     std::string path, value, unit, origin;
   };
@@ -142,21 +164,23 @@ void PrintConfiguration(const Session& session) {
   std::size_t widest = 0, widestValue = 0;
   for (const Parameter& parameter : Parameters()) {
     const ParameterGroup& group = *FindGroup(parameter.group);
-    const std::size_t count = group.count(session.scene);
+    const std::size_t count = group.count(scene);
     for (std::size_t i = 0; i < count; ++i) {
       const std::string object = "/" + std::string(parameter.group) + (group.isArray ? "/" + std::to_string(i) : "");
       const std::string path = object + "/" + std::string(parameter.name);
       Row row;
       row.path = SetPath(parameter, group, i, count);
-      row.value = FormatValue(parameter.get(session.scene, i));
+      row.value = FormatValue(parameter.get(scene, i));
       row.unit = parameter.unit;
-      if (const auto set = session.assignments.find(path); set != session.assignments.end()) {
-        row.origin = "--set " + ShellWord(set->second);
+      if (const auto set = assignments.find(path); set != assignments.end()) {
+        row.origin = set->second;
       } else if (const auto place = session.origins.find(path); place != session.origins.end()) {
         row.origin =
             place->second.file + ":" + std::to_string(place->second.line) + ":" + std::to_string(place->second.column);
       } else {
-        row.origin = "default";
+        // Such as camera.automatic where the camera is stated.
+        const bool isDefault = parameter.get(scene, i) == DefaultValue(parameter);
+        row.origin = isDefault ? "default" : "follows from the rest";
       }
       widest = std::max(widest, row.path.size());
       widestValue = std::max(widestValue, row.value.size() + row.unit.size() + 1);

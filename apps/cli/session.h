@@ -21,7 +21,7 @@ struct Session {
   Scene scene;
   std::filesystem::path file;
   Origins origins;                                 ///< Places in the file.
-  std::map<std::string, std::string> assignments;  ///< By path ("/cloth/0/ks"): the --set that won.
+  std::map<std::string, std::string> assignments;  ///< By path ("/cloth/0/ks"): the option that won, as typed.
 };
 
 /// Messages to stderr; those that concern no file are marked as the program's.
@@ -40,8 +40,11 @@ std::variant<Session, int> OpenSession(const Options& options);
 /// the project's folder.
 Result<std::filesystem::path> ResolveScene(const Options& options, const std::string& name);
 
+/// The scene with the camera that the command line asks for.
+Scene SeenScene(const Options& options, const Scene& scene);
+
 /// Every parameter with its value and where it comes from, to stdout.
-void PrintConfiguration(const Session& session);
+void PrintConfiguration(const Options& options, const Session& session);
 
 /// A word of a command line, quoted for a shell where need be.
 std::string ShellWord(const std::string& word);

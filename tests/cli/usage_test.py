@@ -229,6 +229,16 @@ class Configuration(ProgramTest):
         self.assertRegex(config["cloth.density"][1], r"scene\.json:\d+:\d+$")
         self.assertEqual(config["simulation.frames_per_second"], ("90 1/s", "default"))
 
+    def test_options_for_the_picture_are_origins_too(self):
+        scene = self.write("look.json", {"cloth": cloth(), "look": {"shader": "Normal"}, "camera": {"azimuth": 5}})
+        self.assertRegex(self.lines("shot", scene)["look.shader"][1], r"look\.json:\d+:\d+$")
+        self.assertEqual(self.lines("shot", scene)["camera.automatic"], ("false", "follows from the rest"))
+        config = self.lines("shot", scene, "--shader", "Phong", "--camera", "10,20", "--target", "1,2,3")
+        self.assertEqual(config["look.shader"], ('"Phong"', "--shader Phong"))
+        self.assertEqual(config["camera.azimuth"], ("10 degree", "--camera"))
+        self.assertEqual(config["camera.elevation"], ("20 degree", "--camera"))
+        self.assertEqual(config["camera.target"], ("[1, 2, 3] m", "--target"))
+
     def test_it_runs_nothing(self):
         self.lines("simulate", self.scene(), "-o", "a.csv")
         self.assertEqual(self.files(), ["scene.json"])
