@@ -42,6 +42,11 @@ int View(const Options& options) {
   viewer.set = options.set;
   viewer.root = *root;
   viewer.view = MakeView(options, session.scene);
+  if (!options.uniforms.empty()) {
+    ShaderLibrary shaders(*root / "shaders");
+    const int code = ApplyUniforms(options, shaders.Parameters(viewer.view.look.shader), viewer.view);
+    if (code != kDone) return code;
+  }
   viewer.width = options.width;
   viewer.height = options.height;
   viewer.samples = options.samples.value_or(0);

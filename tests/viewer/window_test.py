@@ -40,6 +40,14 @@ class Opening(ViewerTest):
         self.assertEqual(done.stdout, "")
         return done.stderr
 
+    def test_uniforms_that_are_asked_for(self):
+        with self.viewer(scene("pinned2"), "--shader", "Phong", "--uniform", "diffuse_on=0") as viewer:
+            since = viewer.mark()
+            viewer.click("uniform.u_diffuse_on")  # It was off, so this switches it on.
+            self.assertEqual(viewer.wait("uniform", since, name="u_diffuse_on")["value"][0], 1)
+        self.assertIn("did you mean `u_diffuse_on`?",
+                      self.fails(2, "--shader", "Phong", "--uniform", "diffuse_no=0"))
+
     def test_a_display_that_does_not_answer(self):
         errors = self.fails(5, DISPLAY=":6543")
         self.assertIn("no display", errors)
