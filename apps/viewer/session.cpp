@@ -23,6 +23,17 @@ std::string Path(const Parameter& parameter, int index) {
   return path + "/" + std::string(parameter.name);
 }
 
+std::string InputSource(const Parameter& parameter, int index) {
+  return "input " + Path(parameter, index);
+}
+std::string InputSource(const ShaderParameter& parameter) {
+  return "input " + parameter.name;
+}
+
+Diagnostic Refusal(std::string_view label, const std::string& why) {
+  return MakeError(std::string(label) + ": " + why + "; the old value stays");
+}
+
 /// Whether two scenes have the same values in all parameters of a group that is a single object.
 bool SameGroup(std::string_view group, const Scene& a, const Scene& b) {
   for (const Parameter& parameter : Parameters()) {
@@ -107,9 +118,8 @@ void Session::ResetCloth() {
 // Settings.
 
 bool Session::SetParameter(const Parameter& parameter, int index, const Value& value) {
-  const std::string source = "input " + Path(parameter, index);
   const auto refuse = [&](const std::string& why) {
-    messages_.Set(source, {MakeError(std::string(parameter.label) + ": " + why + "; the old value stays")});
+    Refuse(parameter, index, why);
     return false;
   };
   if (const auto problem = CheckValue(parameter, value)) return refuse(*problem);
@@ -144,14 +154,12 @@ bool Session::SetParameter(const Parameter& parameter, int index, const Value& v
       log_.Write(line);
     }
   }
-  messages_.Set(source, {});
+  messages_.Set(InputSource(parameter, index), {});
   return true;
 }
 
-void Session::RefuseText(const Parameter& parameter, int index, std::string_view text, std::string_view expected) {
-  messages_.Set("input " + Path(parameter, index),
-                {MakeError(std::string(parameter.label) + ": expected " + std::string(expected) + ", got " +
-                           Quote(text, 40) + "; the old value stays")});
+void Session::Refuse(const Parameter& parameter, int index, const std::string& why) {
+  messages_.Set(InputSource(parameter, index), {Refusal(parameter.label, why)});
 }
 
 /// Warnings about the settings as they are now. Those that a slider has left behind are not kept.
@@ -214,11 +222,16 @@ UniformValue Session::Uniform(const ShaderParameter& parameter) const {
 
 void Session::SetUniform(const ShaderParameter& parameter, const UniformValue& value) {
   view_.uniforms[parameter.name] = value;
+  messages_.Set(InputSource(parameter), {});
   if (!log_.enabled()) return;
   log_.Write(LogLine("uniform")
                  .Text("shader", view_.look.shader)
                  .Text("name", parameter.name)
                  .Vector("value", {value[0], value[1], value[2]}));
+}
+
+void Session::RefuseUniform(const ShaderParameter& parameter, const std::string& why) {
+  messages_.Set(InputSource(parameter), {Refusal(parameter.label, why)});
 }
 
 /// What is wrong with the current shader, and with those that something was wrong with before.

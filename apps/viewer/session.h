@@ -50,8 +50,8 @@ class Session {
   /// Sets a parameter of object `index` of its group, or of kAll, if the value will do; else a
   /// message says why not, and the old value stays. Returns whether it was set.
   bool SetParameter(const Parameter& parameter, int index, const Value& value);
-  /// A text that was typed for a parameter is no value; `shown` is what it should have been.
-  void RefuseText(const Parameter& parameter, int index, std::string_view text, std::string_view expected);
+  /// What was typed for a parameter will not do, and why.
+  void Refuse(const Parameter& parameter, int index, const std::string& why);
 
   // View.
   const View& view() const { return view_; }
@@ -64,6 +64,7 @@ class Session {
   std::span<const ShaderParameter> ShaderParameters();  ///< Of the current shader.
   UniformValue Uniform(const ShaderParameter& parameter) const;
   void SetUniform(const ShaderParameter& parameter, const UniformValue& value);
+  void RefuseUniform(const ShaderParameter& parameter, const std::string& why);
   const std::vector<std::string>& shaderNames() const { return shaders_.names(); }
 
   // Files.

@@ -232,14 +232,36 @@ NumberSpec MakeSpec(const Target& target, double divisor) {
           p.logarithmic,    p.kind == ValueKind::Integer};
 }
 
+/// The parameter as it would be described if scenes stated it the way it is shown.
+Parameter AsShown(const Parameter& parameter) {
+  Parameter asShown = parameter;
+  if (const Shown* shown = ShownOf(parameter)) {
+    asShown.unit = shown->unit;
+    asShown.min /= shown->divisor;
+    asShown.max /= shown->divisor;
+  }
+  return asShown;
+}
+
+std::string NotExpected(const std::string& expected, const std::string& typed) {
+  return "expected " + expected + ", got " + Quote(typed, 40);
+}
+
 void Number(Session& session, UiState& state, const Target& target) {
   const Shown* shown = ShownOf(target.parameter);
   const double divisor = shown ? shown->divisor : 1;
   const NumberSpec spec = MakeSpec(target, divisor);
   const double value = std::get<double>(target.parameter.get(session.scene(), target.first));
   const NumberEdit edit = NumberRow(session, state, spec, value / divisor);
-  if (edit.value) session.SetParameter(target.parameter, target.index, *edit.value * divisor);
-  if (edit.text) session.RefuseText(target.parameter, target.index, *edit.text, DescribeExpected(target.parameter));
+  const Parameter asShown = AsShown(target.parameter);
+  if (edit.text) {
+    session.Refuse(target.parameter, target.index, NotExpected(DescribeExpected(asShown), *edit.text));
+  } else if (edit.value) {
+    if (const auto problem = CheckValue(asShown, *edit.value))
+      session.Refuse(target.parameter, target.index, *problem);
+    else
+      session.SetParameter(target.parameter, target.index, *edit.value * divisor);
+  }
 }
 
 void Vector(Session& session, UiState& state, const Target& target) {
@@ -256,7 +278,7 @@ void Vector(Session& session, UiState& state, const Target& target) {
       *components[axis] = *edit.value;
       session.SetParameter(target.parameter, target.index, value);
     }
-    if (edit.text) session.RefuseText(target.parameter, target.index, *edit.text, "a number");
+    if (edit.text) session.Refuse(target.parameter, target.index, NotExpected("a number", *edit.text));
   }
 }
 
@@ -376,6 +398,7 @@ void UniformRow(Session& session, UiState& state, const ShaderParameter& paramet
                           false,
                           parameter.type == ShaderParameter::Type::Int};
     const NumberEdit edit = NumberRow(session, state, spec, static_cast<double>(component));
+    if (edit.text) session.RefuseUniform(parameter, NotExpected("a number", *edit.text));
     if (!edit.value) return;
     component = static_cast<float>(std::clamp(*edit.value, spec.min, spec.max));
     if (spec.whole) component = std::round(component);

@@ -54,6 +54,10 @@ class Shaders(ViewerTest):
             since = viewer.mark()
             viewer.click("uniform.u_diffuse_on")
             self.assertEqual(viewer.wait("uniform", since, name="u_diffuse_on")["value"][0], 0)
+            since = viewer.mark()
+            viewer.type_number("uniform.u_shininess", "much")
+            message = viewer.wait("message", since, severity="error")
+            self.assertIn('Shininess: expected a number, got "much"', message["text"])
 
 
 class Editing(ViewerTest):

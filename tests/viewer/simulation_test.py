@@ -148,6 +148,11 @@ class Settings(ViewerTest):
                 self.assertIn(told, message["text"].replace("1000000000000000", "1e15"))
                 self.assertIn("old value stays", message["text"])
                 self.assertEqual(viewer.count("set"), 0)
+            # In the unit in which it was typed.
+            since = viewer.mark()
+            viewer.type_number("cloth.density", "-5")
+            message = viewer.wait("message", since, severity="error")
+            self.assertIn("Density: expected a number >= 0 g/cm^2, got -5;", message["text"])
             since = viewer.mark()
             viewer.type_number("cloth.ks", "400")
             self.assertEqual(self.set_path(viewer, since, "/cloth/0/ks")["value"], 400)
