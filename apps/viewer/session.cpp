@@ -253,6 +253,13 @@ void Session::RefreshShaderMessages() {
 // Files.
 
 bool Session::Load(const std::filesystem::path& file, const std::string& source, Scene& scene, bool& statesShader) {
+  // Reading a pipe would wait for a writer, and the window with it.
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_other(status)) {
+    messages_.Set(source, {MakeError(PathText(file), "expected a scene file, got a device or pipe")});
+    return false;
+  }
   Origins origins;
   Result<Scene> loaded = LoadScene(file, &origins);
   if (!loaded) {

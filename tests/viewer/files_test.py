@@ -195,6 +195,14 @@ class Editing(ViewerTest):
             since = viewer.key("braceright", "next_scene")
             self.assertEqual(os.path.basename(viewer.wait("open", since)["scene"]), after)
 
+    def test_a_pipe_in_the_folder_does_not_stop_the_window(self):
+        os.mkfifo(os.path.join(self.root, "scene", "pinned2a.json"))
+        with self.open() as viewer:
+            since = viewer.key("braceright", "next_scene")
+            message = viewer.wait("message", since, source="open", severity="error")
+            self.assertIn("device or pipe", message["text"])
+            viewer.step()
+
 
 if __name__ == "__main__":
     unittest.main()
