@@ -198,6 +198,14 @@ ShaderLibrary& GlDevice::shaders() {
   return impl_->shaders;
 }
 
+std::vector<std::filesystem::path> GlDevice::TextureFiles() const {
+  return impl_->textures.Files();
+}
+
+std::vector<std::filesystem::path> GlDevice::ReloadTextures(const std::vector<std::filesystem::path>& files) {
+  return impl_->textures.Reload(files);
+}
+
 Diagnostics GlDevice::TakeWarnings() {
   Diagnostics warnings = impl_->textures.TakeWarnings();
   warnings.insert(warnings.end(), impl_->warnings.begin(), impl_->warnings.end());

@@ -2,8 +2,10 @@
 /// \file
 /// Draws draw lists with OpenGL 3.3 core, into a window as well as without one.
 
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "percale/diagnostic.h"
 #include "render/draw_list.h"
@@ -39,6 +41,11 @@ class GlDevice {
   Status Draw(const DrawList& list, int width, int height);
 
   ShaderLibrary& shaders();
+  /// The files of all textures that were drawn with, those that are missing too.
+  std::vector<std::filesystem::path> TextureFiles() const;
+  /// Reads those textures again, and with one face of the cube map all six; returns what was read. A
+  /// picture that cannot be had leaves the old one in use, with a warning.
+  std::vector<std::filesystem::path> ReloadTextures(const std::vector<std::filesystem::path>& files);
   /// Warnings since the last call: missing textures, and the like.
   Diagnostics TakeWarnings();
 

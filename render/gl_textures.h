@@ -3,10 +3,15 @@
 /// The textures of the classic shaders, on the card.
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "percale/diagnostic.h"
+#include "render/image.h"
 
 namespace percale {
 
@@ -30,10 +35,26 @@ class GlTextures {
   /// The cube map, or a checker with a warning.
   unsigned CubeMap();
 
+  /// The files of all textures that were asked for, those that are missing too.
+  std::vector<std::filesystem::path> Files() const;
+  /// Reads those of `files` again that belong to textures, and with one face of the cube map all six;
+  /// returns what was read. Where that fails, what is on the card stays, with a warning.
+  std::vector<std::filesystem::path> Reload(const std::vector<std::filesystem::path>& files);
+
   /// Warnings since the last call.
   Diagnostics TakeWarnings();
 
  private:
+  using Faces = std::array<Image, 6>;  // In the order of OpenGL's.
+
+  /// Nothing, with a warning that ends in `consequence`, where the file is no picture that the card takes.
+  std::optional<Image> Read(const std::filesystem::path& file, const std::string& consequence);
+  std::optional<Faces> ReadFaces(const std::string& consequence);
+  std::filesystem::path FaceFile(std::size_t face) const;
+  static void Upload(Texture& texture, const Image& image);
+  void UploadCubeMap(const Faces& faces) const;
+  void Warn(const Diagnostics& problems, const std::string& consequence);
+
   std::filesystem::path folder_;
   std::map<std::filesystem::path, Texture> textures_;
   unsigned cubeMap_ = 0;

@@ -56,8 +56,11 @@ Result<Image> Painter::Paint(const Scene& scene, std::span<const ClothShape> clo
 }
 
 ShaderLibrary& Painter::shaders() {
+  return device().shaders();
+}
+GlDevice& Painter::device() {
   impl_->context.MakeCurrent();
-  return impl_->device->shaders();
+  return *impl_->device;
 }
 const GraphicsInfo& Painter::graphics() const {
   return impl_->graphics;

@@ -39,6 +39,7 @@ class Painter {
   Result<Image> Paint(const Scene& scene, std::span<const ClothShape> cloths, const View& view);
 
   ShaderLibrary& shaders();
+  GlDevice& device();  ///< Its context is current until another painter draws.
   const GraphicsInfo& graphics() const;
 
  private:

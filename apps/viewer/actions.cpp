@@ -26,7 +26,7 @@ constexpr Action kActions[] = {
      [](Session& session, UiState&) { session.CycleScene(-1); return true; }},
     {"next_scene", "}", "Next scene file of the folder", '}', None, false,
      [](Session& session, UiState&) { session.CycleScene(1); return true; }},
-    {"reload", "F5", "Read scene and shaders again", 0, F5, false,
+    {"reload", "F5", "Read scene, shaders, textures again", 0, F5, false,
      [](Session& session, UiState&) { session.Reload(); return true; }},
     {"panels", "Tab", "Hide or show the panels", 0, Tab, false,
      [](Session& session, UiState& state) {

@@ -38,7 +38,7 @@ void DrawHelp(const Session& session, UiState& state, float pictureWidth, float 
     }
     ImGui::Separator();
     ImGui::TextDisabled("Click a number to type one; point at a name to read what it means.");
-    ImGui::TextDisabled("Scene and shader files are read again whenever they are saved.");
+    ImGui::TextDisabled("Scenes, shaders and textures are read again whenever they are saved.");
     NoteWindow(session, state, "help");
   }
   ImGui::End();

@@ -34,6 +34,11 @@ Diagnostic Refusal(std::string_view label, const std::string& why) {
   return MakeError(std::string(label) + ": " + why + "; the old value stays");
 }
 
+/// Of what is wrong with a file that is drawn with.
+std::string DrawingSource(const std::string& file) {
+  return "drawing: " + file;
+}
+
 /// Whether two scenes have the same values in all parameters of a group that is a single object.
 bool SameGroup(std::string_view group, const Scene& a, const Scene& b) {
   for (const Parameter& parameter : Parameters()) {
@@ -58,9 +63,10 @@ bool GoesToTerminal(const std::string& source) {
 
 }  // namespace
 
-Session::Session(const ViewerOptions& options, ShaderLibrary& shaders, SessionLog log, std::function<void()> wake)
+Session::Session(const ViewerOptions& options, GlDevice& device, SessionLog log, std::function<void()> wake)
     : options_(options),
-      shaders_(shaders),
+      device_(device),
+      shaders_(device.shaders()),
       log_(std::move(log)),
       messages_([this](const std::string& source, const Diagnostic* diagnostic) {
         if (diagnostic && GoesToTerminal(source)) std::fputs(Format(*diagnostic).c_str(), stderr);
@@ -315,6 +321,27 @@ void Session::Reload() {
   shaders_.Reload();
   if (log_.enabled()) log_.Write(LogLine("reload").Text("what", "shaders"));
   RefreshShaderMessages();
+  ReloadTextures(device_.TextureFiles());
+}
+
+/// What is wrong with them is told with the next picture.
+void Session::ReloadTextures(const std::vector<std::filesystem::path>& files) {
+  // From before the reading on: what is saved meanwhile is seen at the next look.
+  for (const std::filesystem::path& file : files) textureWatches_.insert_or_assign(file, FileWatch(file));
+  for (const std::filesystem::path& file : device_.ReloadTextures(files)) {
+    messages_.Set(DrawingSource(PathText(file)), {});
+    if (log_.enabled()) log_.Write(LogLine("reload").Text("what", "texture").Text("file", PathText(file)));
+  }
+}
+
+/// Reads again what has changed; returns whether anything has.
+bool Session::LookAtTextures() {
+  std::vector<std::filesystem::path> changed;
+  for (const std::filesystem::path& file : device_.TextureFiles()) {
+    if (textureWatches_.try_emplace(file, file).first->second.Changed()) changed.push_back(file);
+  }
+  ReloadTextures(changed);
+  return !changed.empty();
 }
 
 bool Session::OpenScene(const std::filesystem::path& file) {
@@ -385,6 +412,7 @@ bool Session::Update(double now) {
       RefreshShaderMessages();
       news = true;
     }
+    news |= LookAtTextures();
     if (sceneWatch_.Changed()) {
       ReloadScene();
       news = true;
@@ -457,7 +485,7 @@ void Session::ReportDrawing(const Status& drawn, const Diagnostics& warnings) {
   // The shader's own problems are told already.
   const bool told = messages_.Holds("shader " + view_.look.shader);
   messages_.Set("drawing", drawn || told ? Diagnostics{} : drawn.diagnostics());
-  for (const Diagnostic& warning : warnings) messages_.Add("drawing: " + warning.place.file, warning);
+  for (const Diagnostic& warning : warnings) messages_.Add(DrawingSource(warning.place.file), warning);
 }
 
 }  // namespace percale::viewer

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -18,8 +19,8 @@
 #include "apps/viewer/simulation.h"
 #include "apps/viewer/viewer.h"
 #include "percale/parameters.h"
+#include "render/gl_device.h"
 #include "render/scene_view.h"
-#include "render/shader_library.h"
 
 namespace percale::viewer {
 
@@ -28,8 +29,8 @@ class Session {
   /// Every object of a group, in place of an index.
   static constexpr int kAll = -1;
 
-  /// `shaders` must outlive the session. `wake` is called, on any thread, when Update has news.
-  Session(const ViewerOptions& options, ShaderLibrary& shaders, SessionLog log, std::function<void()> wake);
+  /// `device` must outlive the session. `wake` is called, on any thread, when Update has news.
+  Session(const ViewerOptions& options, GlDevice& device, SessionLog log, std::function<void()> wake);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -88,6 +89,8 @@ class Session {
   /// Reads the scene and applies the assignments to it; reports what is wrong as of `source`.
   bool Load(const std::filesystem::path& file, const std::string& source, Scene& scene, bool& statesShader);
   void ReloadScene();
+  void ReloadTextures(const std::vector<std::filesystem::path>& files);
+  bool LookAtTextures();
   void AdoptLook();
   void CheckSettings();
   void RefreshShaderMessages();
@@ -96,6 +99,7 @@ class Session {
   void LogCommand(LogLine line, std::uint64_t command);
 
   const ViewerOptions options_;
+  GlDevice& device_;
   ShaderLibrary& shaders_;
   SessionLog log_;
   Messages messages_;
@@ -104,6 +108,7 @@ class Session {
   std::filesystem::path sceneFile_;
   std::filesystem::path browsed_;  // Where CycleScene stands, which may be a file that could not be read.
   FileWatch sceneWatch_;
+  std::map<std::filesystem::path, FileWatch> textureWatches_;
   View view_;
   bool cameraMoved_ = false;  // By the user.
   bool cameraUnlogged_ = false;

@@ -89,7 +89,7 @@ class Hand {
 class Viewer {
  public:
   Viewer(const ViewerOptions& options, Window& window, GlDevice& device, SessionLog log)
-      : window_(window), device_(device), session_(options, device.shaders(), std::move(log), &Window::Wake) {}
+      : window_(window), device_(device), session_(options, device, std::move(log), &Window::Wake) {}
 
   void LogStart(const ViewerOptions& options) {
     if (!session_.logged()) return;

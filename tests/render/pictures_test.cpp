@@ -520,6 +520,55 @@ TEST_CASE("missing textures show as a checker, with one warning each") {
   }
 }
 
+TEST_CASE("a texture that is read again shows, and one that cannot be read leaves the old one") {
+  const TemporaryFolder root;
+  std::filesystem::copy("shaders", root / "shaders");
+  std::filesystem::create_directories(root / "textures/cube");
+  const auto write = [&](const std::string& name, int size, int red) {
+    Image image = MakeImage(size, size);
+    for (std::size_t p = 0; p < image.rgba.size(); p += 4) image.rgba[p] = std::uint8_t(red);
+    Must(WritePng(root / ("textures/" + name + ".png"), image));
+  };
+  const TestCloth cloth(test::Grid(4), test::Upright);
+  Scene scene = OneCloth();
+  View view = View::ForScene(scene);
+  Painter painter = Must(Painter::Open({.root = root.path(), .width = kWidth, .height = kHeight, .samples = 1}));
+  const auto red = [&] {
+    const std::vector<ClothShape> cloths = {cloth.Shape()};
+    const Image image = Must(painter.Paint(scene, cloths, view));
+    return int(image.At(kWidth / 2, kHeight / 2)[0]);
+  };
+
+  view.look.shader = "Texture";
+  write("texture_1", 4, 50);
+  CHECK(red() == 50);
+  const std::filesystem::path file = root / "textures/texture_1.png";
+  write("texture_1", 16, 200);
+  CHECK(red() == 50);
+  const std::vector<std::filesystem::path> files = painter.device().TextureFiles();
+  CHECK(std::count(files.begin(), files.end(), file) == 1);
+  CHECK(painter.device().ReloadTextures({file}) == std::vector{file});
+  CHECK(red() == 200);
+  test::WriteText(file, "no picture");
+  painter.device().ReloadTextures({file});
+  CHECK(test::Contains(painter.device().TakeWarnings(), "the picture before it stays"));
+  CHECK(red() == 200);
+  CHECK(painter.device().ReloadTextures({root / "textures/texture_9.png"}).empty());
+
+  // One face that changes brings all six.
+  view.look.shader = "Mirror";
+  const char* names[] = {"posx", "negx", "posy", "negy", "posz", "negz"};
+  for (const char* name : names) write("cube/" + std::string(name), 8, 60);
+  CHECK(red() == 60);
+  for (const char* name : names) write("cube/" + std::string(name), 4, 90);
+  CHECK(painter.device().ReloadTextures({root / "textures/cube/posz.png"}).size() == 6);
+  CHECK(red() == 90);
+  std::filesystem::remove(root / "textures/cube/negy.png");
+  painter.device().ReloadTextures({root / "textures/cube/posz.png"});
+  CHECK(test::Contains(painter.device().TakeWarnings(), "negy.png"));
+  CHECK(red() == 90);
+}
+
 TEST_CASE("an unknown shader, a folder without shaders and a size out of range are errors") {
   const TestCloth cloth(test::Grid(4), test::Upright);
   Scene scene = OneCloth();

@@ -157,6 +157,24 @@ class Editing(ViewerTest):
             viewer.wait("reload", since, what="scene")
             viewer.wait("reload", since, what="shaders")
 
+    def test_a_texture_is_read_again_when_it_is_saved(self):
+        texture = os.path.join(self.root, "textures", "texture_1.png")
+        with self.open("--shader", "Texture") as viewer:
+            since = viewer.key("F5", "reload")
+            viewer.wait("reload", since, what="texture", file=texture)
+            since = viewer.mark()
+            shutil.copy(os.path.join(self.root, "textures", "texture_2.png"), texture)
+            viewer.wait("reload", since, what="texture", file=texture)
+            self.assertEqual(viewer.count("message"), 0)
+
+            since = viewer.mark()
+            write(texture, "no picture")
+            message = viewer.wait("message", since, file=texture, severity="warning")
+            self.assertIn("the picture before it stays", message["text"])
+            since = viewer.mark()
+            shutil.copy(os.path.join(ROOT, "textures", "texture_1.png"), texture)
+            viewer.wait("mended", since, source="drawing: " + texture)
+
     def test_settings_of_the_command_line_outlive_a_reload(self):
         with self.open("--set", "cloth.ks=250") as viewer:
             since = viewer.mark()
