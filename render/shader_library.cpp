@@ -6,9 +6,11 @@
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "core/text.h"
 #include "io/atomic_file.h"
@@ -20,6 +22,33 @@ constexpr const char* kCourseOrder[] = {"Wireframe", "Normal",       "Diffuse", 
                                         "Bump",      "Displacement", "Mirror",  "Flag"};
 constexpr std::uintmax_t kMaxShaderBytes = 1 << 20;
 constexpr std::size_t kMaxMessages = 20;  // Of one shader: the first are the ones to read.
+
+/// The uniforms that the program sets, which docs/shaders.md lists; u_lines is for Wireframe alone.
+struct KnownUniform {
+  std::string_view name;
+  GLenum type;
+  std::string_view typeName;
+};
+constexpr KnownUniform kUniforms[] = {
+    {"u_model", GL_FLOAT_MAT4, "mat4"},
+    {"u_view_projection", GL_FLOAT_MAT4, "mat4"},
+    {"u_color", GL_FLOAT_VEC4, "vec4"},
+    {"u_cam_pos", GL_FLOAT_VEC3, "vec3"},
+    {"u_light_pos", GL_FLOAT_VEC3, "vec3"},
+    {"u_light_intensity", GL_FLOAT_VEC3, "vec3"},
+    {"u_texture_1", GL_SAMPLER_2D, "sampler2D"},
+    {"u_texture_2", GL_SAMPLER_2D, "sampler2D"},
+    {"u_texture_3", GL_SAMPLER_2D, "sampler2D"},
+    {"u_texture_4", GL_SAMPLER_2D, "sampler2D"},
+    {"u_texture_1_size", GL_FLOAT_VEC2, "vec2"},
+    {"u_texture_2_size", GL_FLOAT_VEC2, "vec2"},
+    {"u_texture_3_size", GL_FLOAT_VEC2, "vec2"},
+    {"u_texture_4_size", GL_FLOAT_VEC2, "vec2"},
+    {"u_texture_cubemap", GL_SAMPLER_CUBE, "samplerCube"},
+    {"u_normal_scaling", GL_FLOAT, "float"},
+    {"u_height_scaling", GL_FLOAT, "float"},
+    {"u_lines", GL_BOOL, "bool"},
+};
 
 // What tells one version of a file from another. A missing file has size -1.
 struct FileStamp {
@@ -102,7 +131,7 @@ Diagnostic ParseLogLine(const std::string& line, const std::string& file, const 
     }
     while (at < line.size() && line[at] == ' ') ++at;
   } else {
-    at = 0;
+    at = start;
   }
   message.message = line.substr(at);
   if (message.place.line > 0) {
@@ -127,6 +156,50 @@ void AddLog(const std::string& log, const std::string& file, const std::string& 
   }
   // What a driver says about shaders that it accepts is chatter.
   if (failed) problems.insert(problems.end(), found.begin(), found.end());
+}
+
+/// A warning at the line that declares the uniform, in the first of the texts that does.
+Diagnostic UniformWarning(std::string_view name, std::string message,
+                          std::initializer_list<std::pair<std::filesystem::path, std::string_view>> texts) {
+  Diagnostic warning = MakeWarning(std::move(message));
+  const auto isName = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  for (const auto& [file, text] : texts) {
+    std::istringstream in{std::string(text)};
+    int number = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      const std::size_t uniform = line.find("uniform"),
+                        at = line.find(name, uniform == std::string::npos ? 0 : uniform);
+      if (uniform == std::string::npos || at == std::string::npos) continue;
+      if (isName(line[at - 1]) || (at + name.size() < line.size() && isName(line[at + name.size()]))) continue;
+      warning.place = {PathText(file), number, static_cast<int>(at) + 1};
+      warning.excerpt = LineOf(std::string(text), number);
+      if (at < warning.excerpt.size()) warning.caret = warning.place.column;
+      return warning;
+    }
+    if (warning.place.file.empty()) warning.place.file = PathText(file);
+  }
+  return warning;
+}
+
+/// What is wrong with an active uniform that is no parameter: it keeps its initial value, mostly 0,
+/// and the picture is black without a word from OpenGL. Empty: nothing.
+std::string UniformProblem(std::string_view name, GLenum type) {
+  const auto known =
+      std::find_if(std::begin(kUniforms), std::end(kUniforms), [&](const KnownUniform& k) { return k.name == name; });
+  if (known != std::end(kUniforms)) {
+    if (known->type == type) return {};
+    return std::string(name) + " is a " + std::string(known->typeName) + "; declared as anything else it stays 0";
+  }
+  std::vector<std::string_view> names;
+  for (const KnownUniform& uniform : kUniforms) names.push_back(uniform.name);
+  const std::string near = DidYouMean(name, names);
+  const bool isSampler = type == GL_SAMPLER_2D || type == GL_SAMPLER_CUBE;
+  if (isSampler) {
+    return "there is no texture " + std::string(name) + near +
+           "; there are u_texture_1 to u_texture_4 and u_texture_cubemap";
+  }
+  return near.empty() ? "" : "nothing sets " + std::string(name) + near;
 }
 
 GLuint Compile(GLenum stage, const std::string& file, const std::string& source, Diagnostics& problems) {
@@ -280,6 +353,12 @@ struct ShaderLibrary::Impl {
       GLenum type = 0;
       glGetActiveUniform(program, static_cast<GLuint>(i), sizeof uniform, nullptr, &size, &type, uniform);
       built->locations[uniform] = glGetUniformLocation(program, uniform);
+      const bool isParameter = std::any_of(entry.parameters.begin(), entry.parameters.end(),
+                                           [&](const ShaderParameter& p) { return p.name == uniform; });
+      const std::string problem = isParameter ? "" : UniformProblem(uniform, type);
+      if (problem.empty()) continue;
+      entry.problems.push_back(
+          UniformWarning(uniform, problem, {{fragmentFile, *fragmentText}, {vertexFile, *vertexText}}));
     }
     Drop(entry);
     entry.program = std::move(built);

@@ -91,6 +91,9 @@ std::variant<Studio, int> OpenStudio(const Options& options, const Session& sess
   PrintDiagnostics(painter.diagnostics());
   if (const int code = ApplyUniforms(options, painter->shaders().Parameters(view.look.shader), view); code != kDone)
     return code;
+  // Errors are told with the first picture, which they prevent.
+  const Diagnostics& problems = painter->shaders().Problems(view.look.shader);
+  if (!HasErrors(problems)) PrintDiagnostics(problems);
   return Studio{std::move(*painter), std::move(view)};
 }
 

@@ -134,6 +134,14 @@ class Shot(ProgramTest):
         self.assertRegex(done.stderr, r"Broken\.frag:4.*error")
         self.assertNotIn("a.png", self.files())
 
+    def test_a_shader_that_asks_for_what_is_not_there(self):
+        for name in ("shaders", "scene"):
+            shutil.copytree(ROOT / name, self.folder / name)
+        self.write("shaders/Odd.frag", "#version 330\nuniform vec3 u_color;\nout vec4 out_color;\n"
+                                       "void main() { out_color = vec4(u_color, 1); }\n")
+        done = self.run_program("shot", self.scene(), "-r", ".", "--shader", "Odd", "--size", "32x32", "-o", "a.png")
+        self.assertIn("Odd.frag:2:14: warning: u_color is a vec4", done.stderr)
+
     def test_divergence_shows_the_last_good_frame(self):
         self.run_program("shot", ROOT / "scene/pinned2.json", "--set", "simulation.steps_per_frame=1", "--frame", 60,
                          "--size", "32x32", "-o", "a.png", code=4)

@@ -96,6 +96,44 @@ TEST_CASE("new files are new shaders, removed ones go, and a vertex shader of th
   CHECK(library.names() == std::vector<std::string>{"Mirror", "Zebra"});
 }
 
+TEST_CASE("uniforms that nothing sets are told, since what they do to the picture is silent") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  const TemporaryFolder folder;
+  WriteText(folder / "Default.vert", kVertex);
+  const std::pair<const char*, const char*> cases[] = {
+      {"uniform vec3 u_color;", "u_color is a vec4"},
+      {"uniform vec3 u_color ; // @color", ""},  // A parameter: the program sets it as one.
+      {"uniform vec3 u_ligth_pos;", "did you mean `u_light_pos`?"},
+      {"uniform sampler2D u_texture_5;", "there is no texture u_texture_5"},
+      {"uniform sampler2D mine;", "u_texture_1 to u_texture_4"},
+      {"uniform float u_exponent = 2.0;", ""},
+      {"uniform vec4 u_color;", ""},
+  };
+  for (const auto& [declaration, expected] : cases) {
+    CAPTURE(declaration);
+    const std::string text = declaration, type = text.substr(8, text.find(' ', 8) - 8);
+    const std::size_t at = 9 + type.size();
+    const std::string name = text.substr(at, text.find_first_of("; ", at) - at);
+    const std::string use = type == "sampler2D" ? "texture(" + name + ", vec2(0))" : "vec4(" + name + ".x)";
+    const std::string value = type == "float" ? "vec4(" + name + ")" : use;
+    WriteText(folder / "A.frag",
+              "#version 330\nout vec4 out_color;\n" + text + "\nvoid main() { out_color = " + value + "; }\n");
+    ShaderLibrary library(folder.path());
+    REQUIRE(library.Find("A") != nullptr);
+    const Diagnostics& problems = library.Problems("A");
+    INFO(Format(problems));
+    if (*expected == '\0') {
+      CHECK(problems.empty());
+      continue;
+    }
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].severity == Severity::Warning);
+    CHECK(problems[0].place.line == 3);
+    CHECK(problems[0].place.column == int(at) + 1);
+    CHECK(test::Contains(problems, expected));
+  }
+}
+
 TEST_CASE("shaders that do not fit together, missing and empty files, are errors and no crash") {
   const HeadlessContext context = Must(HeadlessContext::Create());
   const TemporaryFolder folder;
@@ -116,5 +154,6 @@ TEST_CASE("shaders that do not fit together, missing and empty files, are errors
     CHECK(HasErrors(library.Problems(name)));
   }
   CHECK(test::Contains(library.Problems("Needs"), "Needs.frag"));
+  CHECK_FALSE(test::Contains(library.Problems("Needs"), "error: error:"));
   CHECK(test::Contains(library.Problems("Neds"), "did you mean `Needs`"));
 }
