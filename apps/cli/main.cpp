@@ -36,7 +36,7 @@ int RunVerb(const Options& options) {
 }
 
 int Main(int argc, char** argv) {
-  IgnoreClosedPipes();
+  LetWritesFail();
   int code = kFailed;
   try {
     const auto parsed = ParseCommandLine(Utf8Arguments(argc, argv));

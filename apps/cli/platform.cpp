@@ -83,9 +83,12 @@ int TerminalWidth() {
   return 80;
 }
 
-void IgnoreClosedPipes() {
+void LetWritesFail() {
 #ifdef SIGPIPE
   std::signal(SIGPIPE, SIG_IGN);
+#endif
+#ifdef SIGXFSZ
+  std::signal(SIGXFSZ, SIG_IGN);
 #endif
 }
 

@@ -21,8 +21,9 @@ bool IsTerminal(std::FILE* stream);
 /// Columns of the terminal behind stderr; 80 when unknown.
 int TerminalWidth();
 
-/// From now on a write to a closed pipe fails instead of ending the program.
-void IgnoreClosedPipes();
+/// A write into a pipe that nobody reads any more, or beyond the file size that the system allows
+/// (ulimit -f), fails like any other instead of ending the program.
+void LetWritesFail();
 /// From now on the first Ctrl+C (or request to end) only sets a mark, so that what was done can be
 /// kept. The second ends the program.
 void CatchInterrupts();

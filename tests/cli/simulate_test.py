@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import os
+import shutil
 import signal
 import struct
 import subprocess
@@ -280,6 +281,17 @@ class Unwritable(ProgramTest):
         for extension in ("csv", "obj", "ply", "pc2"):
             (self.folder / f"full.{extension}").symlink_to("/dev/full")
             self.refused(f"full.{extension}", "disk is full")
+
+    @unittest.skipUnless(shutil.which("bash"), "no bash")
+    def test_a_limit_on_the_size_of_files(self):
+        scene = self.scene(points=30)
+        for extension in ("csv", "obj", "ply", "pc2"):
+            done = subprocess.run(["bash", "-c", f'ulimit -f 16; exec "$0" simulate scene.json --frames 3 --every 1 '
+                                                 f'-o a.{extension}', os.path.abspath(PERCALE)],
+                                  cwd=self.folder, capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn("larger than the system allows", done.stderr)
+            self.assertEqual(self.files(), [scene.name])
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full")
     def test_a_mesh_that_does_not_fit_takes_its_cache_along(self):
