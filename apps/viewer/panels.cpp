@@ -12,7 +12,7 @@
 namespace percale::viewer {
 namespace {
 
-constexpr float kColumnWidth = 372;  // [screen unit at scale 1]
+constexpr float kColumnWidth = 384;  // [screen unit at scale 1]
 
 bool HasColliders(const Session& session) {
   return !session.scene().spheres.empty() || !session.scene().planes.empty();
