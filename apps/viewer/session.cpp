@@ -289,10 +289,15 @@ bool Session::Load(const std::filesystem::path& file, const std::string& source,
     messages_.Set(source, checked);
     return false;
   }
-  // What CheckScene warns of is told as a property of the settings, which sliders can mend.
+  // What CheckScene warns of is told as a property of the settings, which sliders can mend. The loader
+  // names a value as the file does, so that the paths of the two may differ.
+  const auto withoutPath = [](const Diagnostic& d) {
+    return std::string_view(d.message).substr(std::min(d.message.find(": "), d.message.size()));
+  };
   for (const Diagnostic& d : loaded.diagnostics()) {
-    if (std::none_of(checked.begin(), checked.end(), [&](const Diagnostic& c) { return c.message == d.message; }))
-      problems.push_back(d);
+    const bool isOfSettings = std::any_of(checked.begin(), checked.end(),
+                                          [&](const Diagnostic& c) { return withoutPath(c) == withoutPath(d); });
+    if (!isOfSettings) problems.push_back(d);
   }
   messages_.Set(source, problems);
   scene = std::move(*loaded);

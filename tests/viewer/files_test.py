@@ -151,6 +151,18 @@ class Editing(ViewerTest):
             viewer.wait("mended", since, source="scene")
             viewer.wait("reload", since, what="scene")
 
+    def test_a_warning_about_the_settings_is_told_once_and_goes(self):
+        with self.open() as viewer:
+            since = viewer.mark()
+            changed = self.read_scene()
+            changed["cloth"]["ks"] = 300000
+            write(self.scene, json.dumps(changed))
+            viewer.wait("reload", since, what="scene")
+            viewer.type_number("cloth.ks", "5000")
+            viewer.wait("mended", since, source="settings")
+            told = [event for event in viewer.events[since:] if event["event"] == "message"]
+            self.assertEqual([event["source"] for event in told], ["settings"])
+
     def test_f5_reads_everything_again(self):
         with self.open() as viewer:
             since = viewer.key("F5", "reload")
