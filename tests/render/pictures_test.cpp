@@ -423,6 +423,38 @@ TEST_CASE("a height map tilts normals in Bump, and moves the surface in Displace
   }
 }
 
+TEST_CASE("displacement gains from the sphere's resolution, bumps do not") {
+  // Against a picture that is as fine as can be seen, at -a 16 -o 16 and -a 128 -o 128 as in the write-up.
+  LitSphere sphere;
+  const auto paint = [&](const char* shader, int resolution) {
+    sphere.view.look.shader = shader;
+    sphere.view.sphereLatitudes = sphere.view.sphereLongitudes = resolution;
+    return Paint(sphere.scene, {{}}, sphere.view);
+  };
+  // Mean difference per pixel of the sphere, away from its outline, which has corners where it is coarse.
+  const auto error = [&](const char* shader, int resolution) {
+    const Image coarse = paint(shader, resolution), fine = paint(shader, 512);
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const std::optional<Vec3> hit = sphere.Hit(x, y);
+        if (!hit || Dot(UnitOr(*hit - sphere.center, {}), {0, 0, 1}) < 0.5) continue;
+        sum += std::abs(int(coarse.At(x, y)[0]) - int(fine.At(x, y)[0]));
+        ++count;
+      }
+    }
+    REQUIRE(count > 1000);
+    return sum / count;
+  };
+  const double bump16 = error("Bump", 16), bump128 = error("Bump", 128);
+  const double moved16 = error("Displacement", 16), moved128 = error("Displacement", 128);
+  INFO("Bump " << bump16 << ", " << bump128 << "; Displacement " << moved16 << ", " << moved128);
+  CHECK(bump16 < 2);  // Of 255: no one sees it.
+  CHECK(moved16 - moved128 > 2 * (bump16 - bump128));
+  CHECK(moved128 < moved16 / 3);
+}
+
 TEST_CASE("bumps rise towards the same side in both directions of the texture") {
   // A slope along v alone must tilt the normal against growing v: down the hanging sheet, so that a
   // surface rising downwards faces up, to the light, and gets brighter.
