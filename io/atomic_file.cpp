@@ -58,6 +58,14 @@ std::string PathText(const fs::path& path) {
   return {reinterpret_cast<const char*>(text.data()), text.size()};
 }
 
+std::string LowerExtension(const fs::path& path) {
+  std::string extension = PathText(path.extension());
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return extension;
+}
+
 fs::path TextPath(std::string_view text) {
 #ifdef _WIN32
   return fs::path(std::u8string(reinterpret_cast<const char8_t*>(text.data()), text.size()));

@@ -64,6 +64,8 @@ std::FILE* OpenFile(const std::filesystem::path& file, const char* mode);
 
 /// The path as UTF-8 text, for messages.
 std::string PathText(const std::filesystem::path& path);
+/// The ending of the name, with its point, in small letters: ".csv" of "A.CSV".
+std::string LowerExtension(const std::filesystem::path& path);
 
 /// The path that UTF-8 text names.
 std::filesystem::path TextPath(std::string_view text);

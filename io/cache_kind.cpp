@@ -10,10 +10,7 @@ namespace percale {
 namespace fs = std::filesystem;
 
 std::optional<CacheKind> CacheKindOf(const fs::path& file) {
-  std::string extension = PathText(file.extension());
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string extension = LowerExtension(file);
   if (extension == ".csv") return CacheKind::Csv;
   if (extension == ".obj") return CacheKind::Obj;
   if (extension == ".ply") return CacheKind::Ply;

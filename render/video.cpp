@@ -126,9 +126,7 @@ Result<VideoWriter> VideoWriter::Open(const std::filesystem::path& path, const V
     return impl->Fail("the folder \"" + PathText(folder) + "\" does not exist; create it first");
   }
 
-  std::string extension = impl->path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  const std::string extension = LowerExtension(impl->path);
   Diagnostics warnings;
   Status opened = Ok();
   if (extension == ".mp4") {

@@ -15,7 +15,7 @@ int Render(const Options& options) {
   if (const int* code = std::get_if<int>(&opened)) return *code;
   const Session& session = std::get<Session>(opened);
   const std::filesystem::path file = options.output.empty() ? DefaultOutput(session, ".mp4") : TextPath(options.output);
-  if (!file.extension().empty() && file.extension() != ".mp4") {
+  if (!file.extension().empty() && LowerExtension(file) != ".mp4") {
     PrintError("-o: expected a name that ends in .mp4, or that of a new folder for pictures, got " +
                ShellWord(options.output));
     return kUsage;

@@ -16,8 +16,7 @@ int Shot(const Options& options) {
   const Session& session = std::get<Session>(opened);
 
   const fs::path file = options.output.empty() ? DefaultOutput(session, ".png") : TextPath(options.output);
-  const std::string extension = PathText(file.extension());
-  if (extension != ".png" && extension != ".PNG" && options.output.rfind("/dev/", 0) != 0) {
+  if (LowerExtension(file) != ".png" && options.output.rfind("/dev/", 0) != 0) {
     PrintError("-o: expected a name that ends in .png (or a whole number, the longitudes of spheres), got " +
                ShellWord(PathText(file)));
     return kUsage;

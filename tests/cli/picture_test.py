@@ -163,6 +163,12 @@ class Video(ProgramTest):
             stream = probe(self.folder / f"{fps}.mp4")
             self.assertEqual((stream["r_frame_rate"], stream["nb_read_frames"]), (f"{fps}/1", str(pictures)))
 
+    def test_capitals_in_the_ending(self):
+        self.run_program("render", self.scene(), "--frames", 3, "--size", "32x32", "-o", "A.MP4")
+        self.assertEqual(probe(self.folder / "A.MP4")["codec_name"], "h264")
+        self.run_program("shot", "scene.json", "--size", "32x32", "-o", "A.Png")
+        self.assertIn("A.Png", self.files())
+
     def test_default_name(self):
         self.run_program("render", self.scene("tuch.json"), "--frames", 3, "--size", "32x32")
         self.assertEqual(self.files(), ["tuch.json", "tuch.mp4"])
