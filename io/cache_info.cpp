@@ -53,7 +53,7 @@ class Reader {
   /// The next line without its end; nothing at the end of the file.
   std::optional<std::string_view> Line() {
     text_.clear();
-    bool any = false;
+    bool any = false, ended = false;
     while (begin_ < end_ || Fill()) {
       any = true;
       const char* start = buffer_.data() + begin_;
@@ -66,12 +66,23 @@ class Reader {
       text_.append(start, part);
       begin_ += part + (newline ? 1 : 0);
       position_ += part + (newline ? 1 : 0);
-      if (newline) break;
+      ended = newline != nullptr;
+      if (ended) break;
     }
     if (!any) return std::nullopt;
+    ended_ = ended;
     ++line_;
     if (!text_.empty() && text_.back() == '\r') text_.pop_back();
     return std::string_view(text_);
+  }
+
+  /// A text without a line break at its end is whole where other programs wrote it, and cut off within
+  /// a number, perhaps, where ours did.
+  Diagnostics EndWarnings() const {
+    if (ended_) return {};
+    Diagnostic warning = MakeWarning("the last line does not end in a line break; the file may have been cut short");
+    warning.place = {PathText(file_), line_, 0};
+    return {std::move(warning)};
   }
 
   bool tooLong() const { return tooLong_; }
@@ -108,6 +119,7 @@ class Reader {
   std::string text_;
   int line_ = 0;
   bool tooLong_ = false;
+  bool ended_ = true;  // The line that was read last.
 };
 
 std::uint64_t Number(const unsigned char* bytes, int count, bool bigEndian = false) {
@@ -262,7 +274,7 @@ Result<CacheInfo> ReadObj(Reader& reader) {
   }
   if (reader.tooLong() || reader.readFailed()) return reader.EndError("more lines");
   if (info.vertices == 0) return reader.Error("expected lines \"v x y z\", got none");
-  return info;
+  return {info, reader.EndWarnings()};
 }
 
 Result<CacheInfo> ReadCsv(Reader& reader) {
@@ -317,7 +329,7 @@ Result<CacheInfo> ReadCsv(Reader& reader) {
     return reader.Error("expected " + std::to_string(info.vertices) + " rows for frame " + std::to_string(lastFrame) +
                         ", got " + std::to_string(rows) + "; it was cut short");
   }
-  return info;
+  return {info, reader.EndWarnings()};
 }
 
 // --- Stanford PLY ---

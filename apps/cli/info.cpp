@@ -70,10 +70,8 @@ void PrintScene(const Session& session) {
 
 int PrintCache(const fs::path& file) {
   const auto info = ReadCacheInfo(file);
-  if (!info) {
-    PrintDiagnostics(info.diagnostics());
-    return kInvalid;
-  }
+  PrintDiagnostics(info.diagnostics());
+  if (!info) return kInvalid;
   std::error_code code;
   const auto size = fs::file_size(file, code);
   std::printf("%s: %s\n", PathText(file).c_str(), info->format.c_str());

@@ -314,6 +314,27 @@ TEST_CASE("Cut short is never taken for whole") {
   }
 }
 
+TEST_CASE("A text that was cut within a line is refused, or told") {
+  const Folder folder;
+  World world(SmallScene(3, 3), {.threads = 1});
+  for (const char* name : {"a.csv", "a.obj"}) {
+    auto writer = CacheWriter::Open(folder / name, 0.25);
+    REQUIRE(writer);
+    CHECK(writer->Add(world, 0));
+    REQUIRE(writer->Finish());
+    CHECK(ReadCacheInfo(folder / name).diagnostics().empty());
+    const std::string good = Contents(folder / name);
+    const fs::path file = folder / (std::string("cut") + name);
+    for (std::size_t size = 1; size < good.size(); ++size) {
+      if (good[size - 1] == '\n') continue;
+      Put(file, good.substr(0, size));
+      const auto info = ReadCacheInfo(file);
+      CHECK(!info.diagnostics().empty());
+      if (info) CHECK(info.diagnostics()[0].place.line > 0);
+    }
+  }
+}
+
 TEST_CASE("What is no file") {
   const Folder folder;
   CHECK_FALSE(ReadCacheInfo(folder / "none.obj"));
