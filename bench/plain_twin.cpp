@@ -239,10 +239,10 @@ void PlainTwin::SelfCollide(PointMass& point) {
     const Vec3 d = point.position - other->position;
     const double distance = Length(d);
     if (distance > apart) continue;
-    correction += (apart - distance) * UnitOr(d, kNoDirection);
+    correction += distance > 0 ? d * ((apart - distance) / distance) : apart * kNoDirection;
     ++count;
   }
-  if (count > 0) point.position += correction / count / scene_.simulation.stepsPerFrame;
+  if (count > 0) point.position += correction / (count * scene_.simulation.stepsPerFrame);
 }
 
 void PlainTwin::CollideWithSphere(PointMass& point, const SphereSettings& sphere) {

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a point takes in a running World, its springs included: 440 bytes measured at 1000 x 1000.
-constexpr double kBytesPerPoint = 450;
+/// What a point takes in a running World, its springs included: 550 bytes measured at 1000 x 1000.
+constexpr double kBytesPerPoint = 560;
 
 std::string Short(double number) {
   return std::isinf(number) ? "unlimited" : Text("%.4g", number);

@@ -6,67 +6,140 @@
 namespace percale {
 
 namespace {
+
 constexpr int kSmallestTable = 6;  // bits
+// Room of a bucket: more than its members, so that few outgrow it.
+constexpr std::int32_t Room(std::int32_t members) {
+  return (members + 1 + BoxMap::kPadding - 1) / BoxMap::kPadding * BoxMap::kPadding;
+}
+constexpr int kMostRoom = 8;  // no bucket has more room than this times its members ...
+constexpr int kAllRoom = 10;  // ... and so there is room for 2 per point where outgrown buckets go
+
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
 }
 
+}  // namespace
+
 void BoxMap::Reserve(int points) {
-  const auto count = static_cast<std::size_t>(points);
+  const std::size_t count = Index(points);
   int bits = kSmallestTable;
-  while ((std::size_t{1} << bits) < 2 * count) ++bits;  // at most half full
+  while ((std::size_t{1} << bits) < 4 * count) ++bits;
   table_.assign(std::size_t{1} << bits, {});
   tableBits_ = kSmallestTable;
   build_ = 0;
   bucketCount_ = 0;
   bucketOf_.resize(count);
-  first_.assign(count + 1, 0);
-  next_.resize(count);
-  members_.resize(count);
+  first_.resize(2 * count + 1);
+  count_.resize(2 * count + 1);
+  capacity_.resize(2 * count + 1);
+  static_assert(Room(1) <= kMostRoom && Room(2) <= 2 * kMostRoom);
+  members_.assign(kAllRoom * count, 0);
 }
 
 void BoxMap::Build(std::span<const std::uint64_t> keys) {
-  assert(keys.size() <= members_.size());
+  assert(keys.size() <= bucketOf_.size());
   while (!FindBuckets(keys)) ++tableBits_;
-  std::int32_t before = 0;
-  for (std::size_t b = 0; b < static_cast<std::size_t>(bucketCount_); ++b) {
-    first_[b] = before;
-    before += next_[b];
-    next_[b] = first_[b];
+  membersEnd_ = 0;
+  for (std::size_t b = 0; b < Index(bucketCount_); ++b) {
+    first_[b] = membersEnd_;
+    capacity_[b] = Room(count_[b]);
+    membersEnd_ += capacity_[b];
+    count_[b] = 0;
   }
-  first_[static_cast<std::size_t>(bucketCount_)] = before;
   for (std::size_t p = 0; p < keys.size(); ++p) {
-    members_[static_cast<std::size_t>(next_[static_cast<std::size_t>(bucketOf_[p])]++)] = static_cast<std::int32_t>(p);
+    const std::size_t b = Index(bucketOf_[p]);
+    members_[Index(first_[b] + count_[b]++)] = static_cast<std::int32_t>(p);
   }
+  for (std::int32_t b = 0; b < bucketCount_; ++b) Pad(b);
 }
 
-/// Fills bucketOf_, and next_ with the buckets' sizes. Returns false when the table is too small.
+void BoxMap::Pad(std::int32_t bucket) {
+  std::int32_t* const members = members_.data() + first_[Index(bucket)];
+  for (std::int32_t i = count_[Index(bucket)]; i % kPadding != 0; ++i) members[i] = members[0];
+}
+
+/// Where the key is, or the empty slot where it goes.
+BoxMap::Slot& BoxMap::FindSlot(std::uint64_t key) {
+  const std::size_t mask = (std::size_t{1} << tableBits_) - 1;
+  std::size_t at = Index(static_cast<std::int64_t>((key * 0x9e3779b97f4a7c15u) >> (64 - tableBits_)));
+  while (table_[at].build == build_ && table_[at].key != key) at = (at + 1) & mask;
+  return table_[at];
+}
+
+/// Fills bucketOf_, and count_ with the buckets' sizes. Returns false when the table is too small.
 bool BoxMap::FindBuckets(std::span<const std::uint64_t> keys) {
   if (++build_ == 0) {  // the counter came round: old builds could be taken for new ones
     std::fill(table_.begin(), table_.end(), Slot{});
     build_ = 1;
   }
-  const std::size_t mask = (std::size_t{1} << tableBits_) - 1;
-  const std::int32_t mostBuckets = std::int32_t{1} << (tableBits_ - 1);
-  const int shift = 64 - tableBits_;
+  const std::int32_t mostBuckets = std::int32_t{1} << (tableBits_ - 2);  // as many again may come by `Update`
   std::int32_t buckets = 0, bucket = -1;
   std::uint64_t lastKey = 0;
   for (std::size_t p = 0; p < keys.size(); ++p) {
     const std::uint64_t key = keys[p];
     if (key != lastKey || bucket < 0) {  // neighbours in the grid mostly share their box
       lastKey = key;
-      auto at = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> shift);
-      while (table_[at].build == build_ && table_[at].key != key) at = (at + 1) & mask;
-      if (table_[at].build != build_) {
+      Slot& slot = FindSlot(key);
+      if (slot.build != build_) {
         if (buckets == mostBuckets) return false;
-        table_[at] = {key, build_, buckets};
-        next_[static_cast<std::size_t>(buckets)] = 0;
-        ++buckets;
+        slot = {key, build_, buckets};
+        count_[Index(buckets++)] = 0;
       }
-      bucket = table_[at].bucket;
+      bucket = slot.bucket;
     }
     bucketOf_[p] = bucket;
-    ++next_[static_cast<std::size_t>(bucket)];
+    ++count_[Index(bucket)];
   }
   bucketCount_ = buckets;
+  return true;
+}
+
+void BoxMap::Update(std::span<const std::uint64_t> keys, std::span<const std::int32_t> changed) {
+  if (changed.size() > keys.size() / 8) {
+    Build(keys);
+    return;
+  }
+  for (const std::int32_t point : changed) {
+    Remove(bucketOf_[Index(point)], point);
+    if (!Insert(keys[Index(point)], point)) {
+      Build(keys);
+      return;
+    }
+  }
+}
+
+void BoxMap::Remove(std::int32_t bucket, std::int32_t point) {
+  std::int32_t* at = members_.data() + first_[Index(bucket)];
+  std::int32_t* const last = at + --count_[Index(bucket)];
+  while (*at != point) ++at;  // most buckets have fewer members than a search would be worth
+  for (; at < last; ++at) at[0] = at[1];
+  Pad(bucket);
+}
+
+/// Returns false when there is no room.
+bool BoxMap::Insert(std::uint64_t key, std::int32_t point) {
+  Slot& slot = FindSlot(key);
+  if (slot.build != build_) {
+    if (bucketCount_ == std::int32_t{1} << (tableBits_ - 1) || Index(bucketCount_) == first_.size()) return false;
+    slot = {key, build_, bucketCount_++};
+    first_[Index(slot.bucket)] = count_[Index(slot.bucket)] = capacity_[Index(slot.bucket)] = 0;
+  }
+  const std::size_t b = Index(slot.bucket);
+  if (count_[b] == capacity_[b]) {
+    const std::int32_t room = Room(2 * count_[b]);
+    if (Index(membersEnd_ + room) > members_.size()) return false;
+    std::copy_n(members_.data() + first_[b], count_[b], members_.data() + membersEnd_);
+    first_[b] = membersEnd_;
+    capacity_[b] = room;
+    membersEnd_ += room;
+  }
+  bucketOf_[Index(point)] = slot.bucket;
+  std::int32_t* const begin = members_.data() + first_[b];
+  std::int32_t* at = begin + count_[b]++;
+  for (; at > begin && at[-1] > point; --at) at[0] = at[-1];
+  *at = point;
+  Pad(slot.bucket);
   return true;
 }
 

@@ -5,16 +5,18 @@
 /// none of them contracts or reorders arithmetic, so all give the same bits.
 
 #include <cstdint>
+#include <vector>
 
 namespace percale::springs {
 
 /// The rest length that stands where a point creates no spring of a kind.
 inline constexpr double kNoSpringRest = 1e300;
-/// Kernels read this many numbers before and after a sheet's positions, and after its rest lengths;
-/// `GridPadding` more positions before it, for the springs that its first rows do not have.
-inline constexpr int kGridPad = 4;
+/// Kernels read this many numbers after a sheet's positions, rest lengths and forces, ...
+inline constexpr int kGridPad = 8;
+/// ... and this many positions before it, for the springs that its first rows do not have. A multiple of
+/// kGridPad.
 inline int GridPadding(int numWidth) {
-  return 2 * numWidth + kGridPad;
+  return (2 * numWidth + 2 + kGridPad - 1) / kGridPad * kGridPad;
 }
 
 /// Forces and Verlet integration over some rows of one cloth.
@@ -30,37 +32,73 @@ struct IntegrateArgs {
   double keep;                  ///< Share of the velocity that is kept in a step.
   double forceToWay;            ///< dt^2 / mass [m/N]; 0 for a cloth without mass.
   double bound;                 ///< Coordinates beyond it count as diverged [m].
-  double* scratch;              ///< IntegrateScratch(numWidth) doubles that start as zero.
+  double* scratch;              ///< IntegrateScratch(numWidth) doubles; best at a multiple of 64 bytes.
 };
 
-/// Which springs are longer than they may be.
+/// Which springs are so long that the strain limit has to look at them.
 struct LongSpringsArgs {
   int numWidth;
   int rowBegin, rowEnd;
   const double* x[3];
+  const double* nearSquared[6];  ///< Per point and kind: square of the length from which on a spring counts as near
+                                 ///< its limit [m^2]; infinite where there is no spring.
+  std::uint8_t* nearKinds;  ///< Out: per point one bit per kind of spring, set where it is near its limit or longer.
+};
+
+struct GreatestStretchArgs {
+  int numWidth;
+  std::int64_t pointCount;
+  const double* x[3];
   const double* rest[6];
-  double limit;             ///< Greatest length over rest length.
-  std::uint8_t* longKinds;  ///< Out: per point one bit per kind of spring, set where it may be too long.
+};
+struct GreatestStretchResult {
+  double squaredRatio;  ///< Of length and rest length.
+  std::int64_t point;   ///< That creates the spring.
+};
+
+inline int MarkPadding(int numWidth) {
+  return 2 * numWidth + kGridPad;
+}
+
+/// The strain limit's sweep over the springs of one cloth.
+struct StrainArgs {
+  int numWidth;
+  std::int64_t pointCount;
+  double* x[3];               ///< In and out.
+  const std::uint8_t* fixed;  ///< Per point: 1 for pins.
+  const double* rest[6];
+  double limit;               ///< Greatest length over rest length.
+  const std::uint8_t* kinds;  ///< Per point: a bit for each kind of spring that it creates; then MarkPadding zeros.
+  std::uint8_t* marks;        ///< In: those that are near their limit; then MarkPadding zeros. Changed.
+  float* moved;               ///< Per point: zero. Changed.
+  float budget;               ///< While no end moves farther, a spring that is not near its limit stays below it [m].
 };
 
 struct BoxKeyArgs {
-  int count;
-  const double* x[3];
-  double boxSize[3];   ///< [m]
-  std::uint64_t* key;  ///< Out: three box indices of 21 bits each.
+  int firstPoint, count;
+  const double* x[3];     ///< From the first of the points on.
+  double boxSize[3];      ///< [m]
+  std::uint64_t* key;     ///< In and out, from the first of the points on: three box indices of 21 bits each.
+  std::int32_t* changed;  ///< Out: the points whose key is another than it was. As much room as there are points.
+  std::uint8_t* wraps;    ///< Set to 1 when an index does not fit, so that far boxes may share a key.
 };
 
 /// Buckets of the spatial map, whose points push each other apart.
 struct BucketArgs {
   int bucketBegin, bucketEnd;
-  const std::int32_t* first;    ///< Per bucket: index of its first member; one more at the end.
-  const std::int32_t* members;  ///< Indices into x, ascending within a bucket.
+  const std::int32_t* first;    ///< Per bucket: index of its first member.
+  const std::int32_t* count;    ///< Per bucket: how many there are.
+  const std::int32_t* members;  ///< Indices into x, ascending within a bucket. Behind them members stand again, up to
+                                ///< a multiple of 8.
   double* x[3];                 ///< In and out.
   const std::uint8_t* fixed;    ///< Per point: 1 for pins.
   const double* thickness;      ///< Per point [m].
   double greatestApart;         ///< No two points have a greater sum of thicknesses [m].
+  bool sameThickness;           ///< Whether all pairs have that sum.
+  double greatestSpan;  ///< Within a bucket coordinates differ by no more [m]; infinite where that is not known.
   double stepsPerFrame;
-  double* scratch;  ///< 3 * (points of the largest bucket + 4) doubles.
+  double* scratch;       ///< 3 * (points of the largest bucket + kGridPad) doubles.
+  std::int32_t* others;  ///< As many numbers as the largest bucket has points.
 };
 
 /// Points begin <= p < end against one collider.
@@ -79,9 +117,13 @@ struct Kernels {
   const char* name;
   /// Returns 0 when every point stays within bounds.
   std::int64_t (*integrate)(const IntegrateArgs&);
-  /// Returns the number of springs marked. Marks are conservative: measure before you shorten.
+  /// Returns 0 when no spring is near its limit.
   std::int64_t (*markLongSprings)(const LongSpringsArgs&);
-  void (*boxKeys)(const BoxKeyArgs&);
+  /// Returns the number of springs shortened.
+  std::int64_t (*limitStrain)(const StrainArgs&);
+  GreatestStretchResult (*greatestStretch)(const GreatestStretchArgs&);
+  /// Returns the number of points whose key changed.
+  std::int64_t (*boxKeys)(const BoxKeyArgs&);
   /// Returns the number of (point, neighbour) contacts.
   std::int64_t (*separateBuckets)(const BucketArgs&);
   /// Return the number of points put back.
@@ -89,18 +131,20 @@ struct Kernels {
   std::int64_t (*collidePlane)(const ColliderArgs&);
 };
 
-/// Doubles of scratch that `integrate` needs for a cloth of that width: 27 rows with zeros at both ends.
-inline constexpr int kRowPad = 2;
-inline int RowStride(int numWidth) {
-  return numWidth + 2 * kRowPad;
+/// `integrate` keeps sums of forces for this many points, nine numbers each.
+inline int ForceRingSize(int numWidth) {
+  return (numWidth + kGridPad - 1) / kGridPad * kGridPad + 2 * kGridPad;
 }
+/// Doubles of scratch that `integrate` needs for a cloth of that width; a multiple of kGridPad.
 inline int IntegrateScratch(int numWidth) {
-  return 27 * RowStride(numWidth);
+  return 9 * (ForceRingSize(numWidth) + kGridPad);
 }
 
-/// For the processor that we run on.
+/// All that the processor can run, the plain ones first and the fastest last.
+std::vector<const Kernels*> RunnableKernels();
+/// The last of them.
 const Kernels& BestKernels();
-/// For any processor of the platform: the plain twin of the others.
+/// The first of them: for any processor of the platform, the plain twin of the others.
 const Kernels& BaselineKernels();
 
 }  // namespace percale::springs

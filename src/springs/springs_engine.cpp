@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -11,12 +12,14 @@ namespace percale::springs {
 namespace {
 
 constexpr double kStretchLimit = 1.1;     // of the rest length; Provot 1995, section 5
+constexpr double kNearShare = 0.01;       // a spring this close to the limit is looked at; tuned on pinned2
 constexpr double kBendingShare = 0.2;     // bending springs have this share of ks
 constexpr double kBoxesPerSpacing = 3;    // a box of the spatial map spans three spacings of the grid
 constexpr double kBound = 1e6;            // m; a cloth this far out has diverged
-constexpr int kPointsPerChunk = 4096;     // of loops over points; below it a second thread does not pay
-constexpr int kRowPointsPerChunk = 2048;  // of the forces, which cost more
-constexpr int kBucketPointsPerChunk = 1024;
+constexpr int kPointsPerChunk = 2560;     // of loops over points; below it a second thread does not pay
+constexpr int kRowPointsPerChunk = 2500;  // of loops over whole rows
+constexpr int kBucketPointsPerChunk = 2560;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -61,16 +64,17 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
   }
   fixed_.assign(count, 0);
   for (const PinnedPoint& pin : pins_) fixed_[Index(pin.point)] = 1;
-  longKinds_.assign(count + 2 * Index(widest) + 8, 0);
   boxKeys_.resize(count);
+  boxChanges_.resize(count);
+  boxesWrap_.assign(Index(PointChunks()), 0);
   thickness_.resize(count);
   map_.Reserve(pointCount_);
   scratchPerChunk_ = IntegrateScratch(widest);
   integrateScratch_.assign(Index(chunkCount_) * Index(scratchPerChunk_), 0);
   const int bucketChunks = pointCount_ / kBucketPointsPerChunk + 2;
-  bucketChunkEnds_.reserve(Index(bucketChunks));
+  bucketChunks_.reserve(Index(bucketChunks));
   bucketScratch_.resize(3 * (count + Index(kGridPad * bucketChunks)));
-  chunkCounts_.resize(Index(std::max({chunkCount_, bucketChunks, pointCount_ / kPointsPerChunk + 1})));
+  chunkCounts_.resize(Index(std::max({chunkCount_, bucketChunks, PointChunks()})));
   Configure(scene);
   Reset();
 }
@@ -82,32 +86,32 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
   sheet.numHeight = model.numHeight;
   sheet.firstPoint = pointCount_;
   pointCount_ += model.PointCount();
-  sheet.kinds.assign(Index(model.PointCount()), 0);
+  sheet.kinds.assign(Index(model.PointCount() + MarkPadding(model.numWidth)), 0);
+  double shortest = kInfinity;
   for (int kind = 0; kind < kSpringKinds; ++kind) {
     const auto [di, dj] = kSpringSteps[kind];
     sheet.rest[kind].assign(Index(model.PointCount() + kGridPad), kNoSpringRest);
+    sheet.nearSquared[kind].assign(Index(model.PointCount() + kGridPad), kInfinity);
     for (int j = 0; j < model.numHeight; ++j) {
       for (int i = 0; i < model.numWidth; ++i) {
         if (i + di < 0 || i + di >= model.numWidth || j + dj < 0) continue;
         const int p = j * model.numWidth + i;
         sheet.kinds[Index(p)] |= static_cast<std::uint8_t>(1u << kind);
-        sheet.rest[kind][Index(p)] = Length(model.start[Index(p + dj * model.numWidth + di)] - model.start[Index(p)]);
+        const double rest = Length(model.start[Index(p + dj * model.numWidth + di)] - model.start[Index(p)]);
+        const double near = (1 - kNearShare) * kStretchLimit * rest;
+        sheet.rest[kind][Index(p)] = rest;
+        sheet.nearSquared[kind][Index(p)] = near * near;
+        shortest = std::min(shortest, rest);
       }
     }
   }
   for (int kind = 0; kind < kSpringKinds; ++kind) {
     sheet.step[kind] = kSpringSteps[kind].dj * sheet.numWidth + kSpringSteps[kind].di;
   }
-  for (int kind = 0; kind < kSpringKinds; ++kind) {
-    // The spring of kind `other` that ends at point e was created by e - step[other].
-    for (const int end : {0, sheet.step[kind]}) {
-      for (int other = 0; other < kSpringKinds; ++other) {
-        const int creator = end - sheet.step[other];
-        if (creator > 0) sheet.laterSprings[kind].push_back({creator, static_cast<std::uint8_t>(1u << other)});
-      }
-    }
-  }
-  sheet.kinds.resize(Index(model.PointCount() + 2 * model.numWidth + 2), 0);
+  // Both ends of a spring may spend it, and sums in float round.
+  sheet.moveBudget = static_cast<float>(0.49 * kNearShare * kStretchLimit * shortest);
+  sheet.nearKinds.assign(Index(model.PointCount() + MarkPadding(model.numWidth)), 0);
+  sheet.moved.assign(Index(model.PointCount()), 0);
   sheet.rowsPerChunk = sheet.numHeight;
   if (executor_.threads() > 1) {
     sheet.rowsPerChunk = std::max(16, (kRowPointsPerChunk + sheet.numWidth - 1) / sheet.numWidth);
@@ -127,6 +131,7 @@ void SpringsEngine::Configure(const Scene& scene) {
   dt_ = scene_.TimeStep();
   double width = 0, height = 0;
   greatestApart_ = 0;
+  sameThickness_ = true;
   for (std::size_t c = 0; c < sheets_.size(); ++c) {
     const ClothSettings& cloth = scene_.cloths[c];
     Sheet& sheet = sheets_[c];
@@ -143,13 +148,14 @@ void SpringsEngine::Configure(const Scene& scene) {
     const auto first = thickness_.begin() + sheet.firstPoint;
     std::fill(first, first + sheet.PointCount(), cloth.thickness);
     greatestApart_ = std::max(greatestApart_, 2 * cloth.thickness);
+    sameThickness_ = sameThickness_ && cloth.thickness == scene_.cloths[0].thickness;
   }
   boxSize_[0] = width;
   boxSize_[1] = height;
   boxSize_[2] = std::max(width, height);
   bound_ = std::min(kBound, 0x1p50 * std::min(width, height));  // beyond it box indices would not be exact
   if (scene_.wind.drag > 0) {
-    for (auto& axis : windForce_) axis.resize(Index(pointCount_));
+    for (auto& axis : windForce_) axis.resize(Index(pointCount_ + kGridPad));
   }
 
   pinMotionOf_.clear();
@@ -175,6 +181,9 @@ void SpringsEngine::Reset() {
     Put(previous_, p, start_[Index(p)]);
   }
   for (PinnedPoint& pin : pins_) pin.target = pin.previousTarget = pin.start;
+  std::fill(boxesWrap_.begin(), boxesWrap_.end(), 0);
+  std::fill(boxKeys_.begin(), boxKeys_.end(), ~std::uint64_t{0});
+  mapBuilt_ = false;
 }
 
 /// Calls body(sheet, rowBegin, rowEnd, chunk) for chunks of rows of all sheets.
@@ -189,11 +198,14 @@ void SpringsEngine::ForRowChunks(Body&& body) {
   });
 }
 
+int SpringsEngine::PointChunks() const {
+  return (pointCount_ + kPointsPerChunk - 1) / kPointsPerChunk;
+}
+
 /// Calls body(begin, end, chunk) for chunks of all points.
 template <class Body>
 void SpringsEngine::ForPointChunks(Body&& body) {
-  const int chunks = (pointCount_ + kPointsPerChunk - 1) / kPointsPerChunk;
-  executor_.ForChunks(chunks, [&](int chunk) {
+  executor_.ForChunks(PointChunks(), [&](int chunk) {
     const int begin = chunk * kPointsPerChunk;
     body(begin, std::min(begin + kPointsPerChunk, pointCount_), chunk);
   });
@@ -290,50 +302,79 @@ void SpringsEngine::HoldPins(int begin, int end) {
 
 void SpringsEngine::FindContacts() {
   if (!scene_.simulation.selfCollision) return;
-  const HashFunction hash = scene_.simulation.hash;
-  ForPointChunks([&](int begin, int end, int) {
-    if (hash == HashFunction::Exact) {
-      kernels_.boxKeys({end - begin,
-                        {positions_[0] + begin, positions_[1] + begin, positions_[2] + begin},
-                        {boxSize_[0], boxSize_[1], boxSize_[2]},
-                        boxKeys_.data() + begin});
-      return;
-    }
-    for (std::size_t p = Index(begin); p < Index(end); ++p) {
-      const std::int64_t x = BoxIndex(positions_[0][p], boxSize_[0]), y = BoxIndex(positions_[1][p], boxSize_[1]),
-                         z = BoxIndex(positions_[2][p], boxSize_[2]);
-      boxKeys_[p] = hash == HashFunction::Linear   ? static_cast<std::uint64_t>(7 * x + 5 * y + 3 * z)
-                    : hash == HashFunction::Powers ? Power(x, 6) + Power(y, 4) + Power(z, 2)
-                                                   : 0;  // Brute: one bucket for all
-    }
+  ForPointChunks([&](int begin, int end, int chunk) {
+    chunkCounts_[Index(chunk)] =
+        scene_.simulation.hash == HashFunction::Exact
+            ? kernels_.boxKeys({begin,
+                                end - begin,
+                                {positions_[0] + begin, positions_[1] + begin, positions_[2] + begin},
+                                {boxSize_[0], boxSize_[1], boxSize_[2]},
+                                boxKeys_.data() + begin,
+                                boxChanges_.data() + begin,
+                                &boxesWrap_[Index(chunk)]})
+            : HashKeys(begin, end);
   });
-  map_.Build(boxKeys_);
-  bucketChunkEnds_.clear();
-  const std::span<const std::int32_t> first = map_.First();
-  std::int32_t before = 0;
-  for (int bucket = 1; bucket <= map_.BucketCount(); ++bucket) {
-    if (first[Index(bucket)] - before < kBucketPointsPerChunk && bucket < map_.BucketCount()) continue;
-    bucketChunkEnds_.push_back(bucket);
-    before = first[Index(bucket)];
+  if (!mapBuilt_) {
+    map_.Build(boxKeys_);
+    mapBuilt_ = true;
+  } else {
+    std::size_t changes = 0;  // of all chunks, brought together
+    for (int chunk = 0; chunk < PointChunks(); ++chunk) {
+      const std::size_t count = Index(chunkCounts_[Index(chunk)]);
+      std::copy_n(boxChanges_.data() + chunk * kPointsPerChunk, count, boxChanges_.data() + changes);
+      changes += count;
+    }
+    map_.Update(boxKeys_, {boxChanges_.data(), changes});
   }
+  bucketChunks_.clear();
+  std::int32_t points = 0, pointsBefore = 0;
+  for (int bucket = 0; bucket < map_.BucketCount(); ++bucket) {
+    points += map_.Count()[bucket];
+    if (points - pointsBefore < kBucketPointsPerChunk && bucket + 1 < map_.BucketCount()) continue;
+    bucketChunks_.push_back({bucket + 1, pointsBefore});
+    pointsBefore = points;
+  }
+}
+
+/// Keys of the points begin <= p < end by one of the write-up's hash functions. Lists the points whose
+/// key changed and returns how many there are.
+std::int64_t SpringsEngine::HashKeys(int begin, int end) {
+  const HashFunction hash = scene_.simulation.hash;
+  std::int64_t changed = 0;
+  for (int p = begin; p < end; ++p) {
+    const std::int64_t x = BoxIndex(positions_[0][p], boxSize_[0]), y = BoxIndex(positions_[1][p], boxSize_[1]),
+                       z = BoxIndex(positions_[2][p], boxSize_[2]);
+    const std::uint64_t key = hash == HashFunction::Linear   ? static_cast<std::uint64_t>(7 * x + 5 * y + 3 * z)
+                              : hash == HashFunction::Powers ? Power(x, 6) + Power(y, 4) + Power(z, 2)
+                                                             : 0;  // Brute: one bucket for all
+    if (key != boxKeys_[Index(p)]) boxChanges_[Index(begin + changed++)] = p;
+    boxKeys_[Index(p)] = key;
+  }
+  return changed;
 }
 
 void SpringsEngine::SelfCollide() {
   if (!scene_.simulation.selfCollision) return;
-  const int chunks = static_cast<int>(bucketChunkEnds_.size());
+  const int chunks = static_cast<int>(bucketChunks_.size());
+  const bool near = scene_.simulation.hash == HashFunction::Exact &&
+                    std::find(boxesWrap_.begin(), boxesWrap_.end(), 1) == boxesWrap_.end();
   executor_.ForChunks(chunks, [&](int chunk) {
     BucketArgs args{};
-    args.bucketBegin = chunk == 0 ? 0 : bucketChunkEnds_[Index(chunk - 1)];
-    args.bucketEnd = bucketChunkEnds_[Index(chunk)];
-    args.first = map_.First().data();
-    args.members = map_.Members().data();
+    args.bucketBegin = chunk == 0 ? 0 : bucketChunks_[Index(chunk - 1)].bucketEnd;
+    args.bucketEnd = bucketChunks_[Index(chunk)].bucketEnd;
+    args.first = map_.First();
+    args.count = map_.Count();
+    args.members = map_.Members();
     for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis];
     args.fixed = fixed_.data();
     args.thickness = thickness_.data();
     args.greatestApart = greatestApart_;
+    args.sameThickness = sameThickness_;
+    args.greatestSpan = near ? boxSize_[2] : kInfinity;
     args.stepsPerFrame = scene_.simulation.stepsPerFrame;
     // No bucket of a chunk has more points than the chunk.
-    args.scratch = bucketScratch_.data() + 3 * (args.first[args.bucketBegin] + kGridPad * chunk);
+    args.scratch = bucketScratch_.data() + 3 * (bucketChunks_[Index(chunk)].pointsBefore + kGridPad * chunk);
+    args.others = boxChanges_.data() + bucketChunks_[Index(chunk)].pointsBefore;
     chunkCounts_[Index(chunk)] = kernels_.separateBuckets(args);
   });
   counts_.selfContacts += SumChunkCounts(chunks) / 2;
@@ -374,72 +415,40 @@ void SpringsEngine::Collide() {
     HoldPins(begin, end);
     chunkCounts_[Index(chunk)] = contacts;
   });
-  counts_.colliderContacts += SumChunkCounts((pointCount_ + kPointsPerChunk - 1) / kPointsPerChunk);
+  counts_.colliderContacts += SumChunkCounts(PointChunks());
 }
 
 void SpringsEngine::LimitStrain() {
-  ForRowChunks([&](const Sheet& sheet, int rowBegin, int rowEnd, int chunk) {
+  ForRowChunks([&](Sheet& sheet, int rowBegin, int rowEnd, int chunk) {
     LongSpringsArgs args{};
     args.numWidth = sheet.numWidth;
     args.rowBegin = rowBegin;
     args.rowEnd = rowEnd;
     for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis] + sheet.firstPoint;
-    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.rest[kind].data();
-    args.limit = kStretchLimit;
-    args.longKinds = longKinds_.data() + sheet.firstPoint;
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.nearSquared[kind] = sheet.nearSquared[kind].data();
+    args.nearKinds = sheet.nearKinds.data();
     chunkCounts_[Index(chunk)] = kernels_.markLongSprings(args);
   });
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     const int end = s + 1 < sheets_.size() ? sheets_[s + 1].firstChunk : chunkCount_;
-    std::int64_t marked = 0;
-    for (int chunk = sheets_[s].firstChunk; chunk < end; ++chunk) marked += chunkCounts_[Index(chunk)];
-    if (marked > 0) LimitSheet(sheets_[s]);
+    std::int64_t nearSprings = 0;
+    for (int chunk = sheets_[s].firstChunk; chunk < end; ++chunk) nearSprings += chunkCounts_[Index(chunk)];
+    if (nearSprings == 0) continue;
+    Sheet& sheet = sheets_[s];
+    std::fill(sheet.moved.begin(), sheet.moved.end(), 0.0f);
+    StrainArgs args{};
+    args.numWidth = sheet.numWidth;
+    args.pointCount = sheet.PointCount();
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis] + sheet.firstPoint;
+    args.fixed = fixed_.data() + sheet.firstPoint;
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.rest[kind].data();
+    args.limit = kStretchLimit;
+    args.kinds = sheet.kinds.data();
+    args.marks = sheet.nearKinds.data();
+    args.moved = sheet.moved.data();
+    args.budget = sheet.moveBudget;
+    counts_.limitedSprings += kernels_.limitStrain(args);
   }
-}
-
-/// The sweep over all springs in creation order. A spring that was not marked and whose ends no
-/// earlier spring moved is not too long, so the sweep visits marks only; where it moves a point, it
-/// marks the later springs there.
-void SpringsEngine::LimitSheet(const Sheet& sheet) {
-  const int count = sheet.PointCount();
-  double* const x[3] = {positions_[0] + sheet.firstPoint, positions_[1] + sheet.firstPoint,
-                        positions_[2] + sheet.firstPoint};
-  std::uint8_t* const marks = longKinds_.data() + sheet.firstPoint;
-  const std::uint8_t* const fixed = fixed_.data() + sheet.firstPoint;
-  const std::uint8_t* const kinds = sheet.kinds.data();
-  std::int64_t limited = 0;
-  for (int p = 0; p < count; ++p) {
-    if (marks[p] == 0) {
-      std::uint64_t eight;  // marks are few: step over stretches without any
-      std::memcpy(&eight, marks + p, sizeof eight);
-      if (eight == 0) p += 7;
-      continue;
-    }
-    Vec3 creator = Get(x, p);
-    for (int kind = 0; kind < kSpringKinds; ++kind) {
-      if (!(marks[p] & 1u << kind)) continue;
-      const int q = p + sheet.step[kind];
-      const double limit = kStretchLimit * sheet.rest[kind][Index(p)];
-      const Vec3 other = Get(x, q);
-      const Vec3 d = other - creator;
-      const double squared = Dot(d, d);
-      if (squared < limit * limit * (1 - 1e-12)) continue;  // surely short enough
-      const double length = std::sqrt(squared);
-      if (length <= limit || (fixed[p] && fixed[q])) continue;
-      const Vec3 excess = d * ((length - limit) / length);
-      const double shareP = fixed[p] ? 0 : fixed[q] ? 1 : 0.5;
-      const double shareQ = fixed[q] ? 0 : 1 - shareP;
-      creator += shareP * excess;
-      Put(x, q, other - shareQ * excess);
-      ++limited;
-      marks[p] |= static_cast<std::uint8_t>(kinds[p] & (~0u << (kind + 1)));
-      for (const LaterSpring& later : sheet.laterSprings[kind]) {
-        marks[p + later.creator] |= static_cast<std::uint8_t>(kinds[p + later.creator] & later.kindBit);
-      }
-    }
-    Put(x, p, creator);
-  }
-  counts_.limitedSprings += limited;
 }
 
 void SpringsEngine::ReadState(int cloth, std::span<Vec3> positions, std::span<Vec3> previous) const {
@@ -456,15 +465,14 @@ Stretch SpringsEngine::GreatestStretch() const {
   Stretch greatest;  // its ratio squared, until the end
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     const Sheet& sheet = sheets_[s];
-    for (int kind = 0; kind < kSpringKinds; ++kind) {
-      for (int v = 0; v < sheet.PointCount(); ++v) {
-        if (!(sheet.kinds[Index(v)] & 1u << kind)) continue;
-        const int p = sheet.firstPoint + v;
-        const Vec3 d = Get(positions_, p + sheet.step[kind]) - Get(positions_, p);
-        const double rest = sheet.rest[kind][Index(v)];
-        const double ratio = Dot(d, d) / (rest * rest);
-        if (ratio > greatest.ratio) greatest = {ratio, {static_cast<int>(s), v}};
-      }
+    GreatestStretchArgs args{};
+    args.numWidth = sheet.numWidth;
+    args.pointCount = sheet.PointCount();
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis] + sheet.firstPoint;
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.rest[kind].data();
+    const GreatestStretchResult found = kernels_.greatestStretch(args);
+    if (found.squaredRatio > greatest.ratio) {
+      greatest = {found.squaredRatio, {static_cast<int>(s), static_cast<int>(found.point)}};
     }
   }
   greatest.ratio = std::sqrt(greatest.ratio);

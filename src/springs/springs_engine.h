@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "collide/box_map.h"
+#include "core/aligned.h"
 #include "core/executor.h"
 #include "mesh/cloth_model.h"
 #include "mesh/engine_types.h"
@@ -25,25 +26,22 @@
 
 namespace percale::springs {
 
-/// A spring that touches the ends of a spring and comes after it: the point that creates it,
-/// relative to the creator of the first, and the bit of its kind.
-struct LaterSpring {
-  int creator;
-  std::uint8_t kindBit;
-};
-
 /// One cloth's part of the arrays.
 struct Sheet {
   int numWidth = 0, numHeight = 0;
   int firstPoint = 0;
-  std::vector<double>
-      rest[kSpringKinds];           ///< Per point that creates the spring [m]; kNoSpringRest where there is none.
-  std::vector<std::uint8_t> kinds;  ///< Per point: a bit for each kind of spring that it creates; then zeros.
-  int step[kSpringKinds] = {};      ///< From the index of the creator to that of the other end.
-  std::vector<LaterSpring> laterSprings[kSpringKinds];  ///< Of a spring of each kind.
-  double stiffness[kSpringKinds] = {};                  ///< [N/m]; 0 for kinds that are not enabled.
-  double mass = 0;                                      ///< Of a point [kg].
-  double keep = 1;                                      ///< Share of the velocity kept in a step.
+  AlignedVector<double>
+      rest[kSpringKinds];  ///< Per point that creates the spring [m]; kNoSpringRest where there is none.
+  AlignedVector<double> nearSquared[kSpringKinds];  ///< Likewise the square of the length from which on a spring
+                                                    ///< is near the strain limit [m^2]; or infinity.
+  std::vector<std::uint8_t> kinds;                  ///< Per point: a bit for each kind of spring that it creates.
+  std::vector<std::uint8_t> nearKinds;              ///< Per point: those that are near the strain limit; then zeros.
+  std::vector<float> moved;                         ///< Per point: how far the strain limit moved it [m].
+  float moveBudget = 0;                 ///< How far a point may move before it concerns springs that were not near.
+  int step[kSpringKinds] = {};          ///< From the index of the creator to that of the other end.
+  double stiffness[kSpringKinds] = {};  ///< [N/m]; 0 for kinds that are not enabled.
+  double mass = 0;                      ///< Of a point [kg].
+  double keep = 1;                      ///< Share of the velocity kept in a step.
   int rowsPerChunk = 1;
   int firstChunk = 0;
   int PointCount() const { return numWidth * numHeight; }
@@ -93,11 +91,12 @@ class SpringsEngine {
   void AddSheet(const ClothModel& model);
   void ComputeWind(double time);
   void HoldPins(int begin, int end);
-  void LimitSheet(const Sheet& sheet);
+  std::int64_t HashKeys(int begin, int end);
   template <class Body>
   void ForRowChunks(Body&& body);
   template <class Body>
   void ForPointChunks(Body&& body);
+  int PointChunks() const;
   std::int64_t SumChunkCounts(int chunks) const;
 
   const Executor& executor_;
@@ -110,25 +109,31 @@ class SpringsEngine {
   std::vector<Vec3> start_;
   // One array per axis, with padding around: positions, and positions one step ago. They change
   // places in every step.
-  std::vector<double> positionStore_[3], previousStore_[3];
+  AlignedVector<double> positionStore_[3], previousStore_[3];
   double* positions_[3] = {};
   double* previous_[3] = {};
-  std::vector<double> windForce_[3];
-  std::vector<PinnedPoint> pins_;        // by point, ascending
-  std::vector<int> pinMotionOf_;         // indices into scene_.pinMotions
-  std::vector<std::uint8_t> fixed_;      // per point
-  std::vector<double> thickness_;        // per point [m]
-  std::vector<std::uint8_t> longKinds_;  // per point: springs that the strain limit has to visit
+  AlignedVector<double> windForce_[3];
+  std::vector<PinnedPoint> pins_;    // by point, ascending
+  std::vector<int> pinMotionOf_;     // indices into scene_.pinMotions
+  std::vector<std::uint8_t> fixed_;  // per point
+  std::vector<double> thickness_;    // per point [m]
   std::vector<std::uint64_t> boxKeys_;
+  std::vector<std::int32_t> boxChanges_;  // points whose box changed: per chunk of points, from its first on
+  std::vector<std::uint8_t> boxesWrap_;   // per chunk of points: whether box indices did not fit since the start
+  bool mapBuilt_ = false;
   double boxSize_[3] = {};
   double bound_ = 0;
-  double greatestApart_ = 0;
+  double greatestApart_ = 0;  // greatest sum of two thicknesses [m]
+  bool sameThickness_ = true;
   BoxMap map_;
   int scratchPerChunk_ = 0;
-  std::vector<double> integrateScratch_;       // per chunk of rows
-  std::vector<std::int64_t> chunkCounts_;      // per chunk of any loop
-  std::vector<std::int32_t> bucketChunkEnds_;  // last bucket of each chunk of SelfCollide
-  std::vector<double> bucketScratch_;          // per point, padded
+  AlignedVector<double> integrateScratch_;  // per chunk of rows
+  std::vector<std::int64_t> chunkCounts_;   // per chunk of any loop
+  struct BucketChunk {
+    std::int32_t bucketEnd, pointsBefore;
+  };
+  std::vector<BucketChunk> bucketChunks_;  // of SelfCollide
+  std::vector<double> bucketScratch_;      // per point, padded
   EngineCounts counts_;
 };
 

@@ -15,7 +15,7 @@ namespace {
 /// 32 bits.
 constexpr std::int64_t kMostPoints = std::int64_t{1} << 27;
 /// What one point takes in a World and in a picture of it, measured generously [byte].
-constexpr std::int64_t kBytesPerPoint = 600;
+constexpr std::int64_t kBytesPerPoint = 720;
 /// A spacing below this is lost in coordinates of the order of 1 m [m].
 constexpr double kSmallestSpacing = 1e-9;
 /// A normal shorter than this has no direction that could be trusted.

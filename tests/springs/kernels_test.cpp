@@ -1,53 +1,266 @@
-// The inner loops by themselves.
+// The strain limit and its helpers by themselves, against plain loops over all springs.
 
 #include "springs/kernels.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "math/splitmix64.h"
+#include "tests/springs/kernel_arrays.h"
+
 using namespace percale;
 using namespace percale::springs;
+using namespace percale::test;
+
+namespace {
+
+constexpr double kLimit = 1.1;
+constexpr double kNear = 0.99 * kLimit;  // a spring longer than that, times its rest length, is marked
+
+/// A grid of the spacing 1 at rest, its corners a little off so that no two springs are equally long.
+struct Sheet {
+  Sheet(int width, int height, SplitMix64& random)
+      : numWidth(width), numHeight(height), count(width * height), x(width, count), rest(count) {
+    fixed.assign(At(count), 0);
+    kinds.assign(At(count + MarkPadding(numWidth)), 0);
+    for (auto& kind : nearSquared) kind.assign(At(count + kGridPad), std::numeric_limits<double>::infinity());
+    for (int p = 0; p < count; ++p) {
+      x(0, p) = p % width + 0.01 * random.NextUnit();
+      x(1, p) = p / width + 0.01 * random.NextUnit();
+      x(2, p) = 0.01 * random.NextUnit();
+    }
+    shortest = std::numeric_limits<double>::infinity();
+    for (int p = 0; p < count; ++p) {
+      for (int kind = 0; kind < kSpringKinds; ++kind) {
+        if (!Creates(width, p, kind)) continue;
+        kinds[At(p)] = static_cast<std::uint8_t>(kinds[At(p)] | 1u << kind);
+        rest[kind][At(p)] = std::sqrt(Squared(p, kind));
+        nearSquared[kind][At(p)] = std::pow(kNear * rest[kind][At(p)], 2);
+        shortest = std::min(shortest, rest[kind][At(p)]);
+      }
+    }
+  }
+
+  /// Of the length of a spring.
+  double Squared(int p, int kind) const {
+    const std::int64_t q = p + Step(numWidth, kind);
+    const double dx = x(0, q) - x(0, p), dy = x(1, q) - x(1, p), dz = x(2, q) - x(2, p);
+    return dx * dx + dy * dy + dz * dz;
+  }
+
+  std::int64_t Mark(const Kernels& kernels, int rowBegin, int rowEnd, std::vector<std::uint8_t>& marks) const {
+    LongSpringsArgs args{};
+    args.numWidth = numWidth;
+    args.rowBegin = rowBegin;
+    args.rowEnd = rowEnd;
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = x.axis(axis);
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.nearSquared[kind] = nearSquared[kind].data();
+    args.nearKinds = marks.data();
+    return kernels.markLongSprings(args);
+  }
+
+  std::int64_t Limit(const Kernels& kernels) {
+    std::vector<std::uint8_t> marks(At(count + MarkPadding(numWidth)), 0);
+    if (Mark(kernels, 0, numHeight, marks) == 0) return 0;
+    std::vector<float> moved(At(count), 0);
+    StrainArgs args{};
+    args.numWidth = numWidth;
+    args.pointCount = count;
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = x.axis(axis);
+    args.fixed = fixed.data();
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = rest[kind].data();
+    args.limit = kLimit;
+    args.kinds = kinds.data();
+    args.marks = marks.data();
+    args.moved = moved.data();
+    args.budget = static_cast<float>(0.49 * (kLimit - kNear) * shortest);
+    return kernels.limitStrain(args);
+  }
+
+  /// Provot's sweep taken literally. Returns the number of springs shortened.
+  std::int64_t LimitPlainly() {
+    std::int64_t limited = 0;
+    for (int p = 0; p < count; ++p) {
+      for (int kind = 0; kind < kSpringKinds; ++kind) {
+        if (!Creates(numWidth, p, kind)) continue;
+        const std::int64_t q = p + Step(numWidth, kind);
+        const double length = std::sqrt(Squared(p, kind)), limit = kLimit * rest[kind][At(p)];
+        const bool fixedP = fixed[At(p)] != 0, fixedQ = fixed[At(q)] != 0;
+        if (length <= limit || (fixedP && fixedQ)) continue;
+        ++limited;
+        const double factor = (length - limit) / length;
+        for (int axis = 0; axis < 3; ++axis) {
+          const double excess = (x(axis, q) - x(axis, p)) * factor;
+          if (!fixedP) x(axis, p) += fixedQ ? excess : 0.5 * excess;
+          if (!fixedQ) x(axis, q) -= fixedP ? excess : 0.5 * excess;
+        }
+      }
+    }
+    return limited;
+  }
+
+  int numWidth, numHeight, count;
+  Axes x;
+  RestLengths rest;
+  std::vector<double> nearSquared[kSpringKinds];
+  std::vector<std::uint8_t> fixed, kinds;
+  double shortest;
+};
+
+constexpr int kStretches = 7;
+/// Stretches a sheet: evenly or at random, from below the limit to far beyond it.
+void StretchSheet(Sheet& s, int how, SplitMix64& random) {
+  const auto noise = [&] { return 2 * random.NextUnit() - 1; };
+  for (int p = 0; p < s.count; ++p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      double& x = s.x(axis, p);
+      switch (how) {
+        case 0:  // a few are near the limit
+          x += 0.04 * noise();
+          break;
+        case 1:  // all are just below it
+          x = 1.095 * x + 0.004 * noise();
+          break;
+        case 2:  // a few are long, and what they move makes others long
+          x = 1.085 * x + (random.Next() % 20 == 0 ? 0.3 * noise() : 0);
+          break;
+        case 3:
+          x += noise();
+          break;
+        case 4:
+          x += 100 * noise();
+          break;
+        case 5:  // a hair below the mark, so that whatever is moved beyond the budget makes a spring long
+          x = (kNear - 1e-6) * x + (random.Next() % 30 == 0 ? 0.06 * noise() : 0);
+          break;
+        default:  // one point was torn away
+          if (p == s.count / 2) x += 30 * noise();
+      }
+    }
+  }
+}
+
+}  // namespace
 
 TEST_CASE("rows are marked by themselves: what another thread owns is not touched") {
   constexpr std::uint8_t kForeign = 0xc0;  // no kind has these bits
-  for (const Kernels* kernels : {&BestKernels(), &BaselineKernels()}) {
-    for (const int numWidth : {2, 3, 4, 5, 7}) {
-      const int numHeight = 9, count = numWidth * numHeight, front = GridPadding(numWidth);
-      // A grid of spacing 2 whose springs are 1 long at rest: all of them are too long.
-      std::vector<double> axes[3];
-      for (auto& axis : axes) axis.assign(static_cast<std::size_t>(front + count + kGridPad), 0);
-      for (int p = 0; p < count; ++p) {
-        axes[0][static_cast<std::size_t>(front + p)] = 2 * (p % numWidth);
-        axes[1][static_cast<std::size_t>(front + p)] = 2 * (p / numWidth);
-      }
-      const std::vector<double> rest(static_cast<std::size_t>(count + kGridPad), 1);
-      for (int rowBegin = 0; rowBegin < numHeight; ++rowBegin) {
-        for (int rowEnd = rowBegin + 1; rowEnd <= numHeight; ++rowEnd) {
+  SplitMix64 random(30);
+  for (const Kernels* kernels : RunnableKernels()) {
+    for (const int numWidth : {2, 3, 4, 5, 7, 8, 9, 17}) {
+      constexpr int kHeight = 9;
+      Sheet s(numWidth, kHeight, random);
+      StretchSheet(s, numWidth % 2 == 0 ? 3 : 2, random);
+      for (int rowBegin = 0; rowBegin < kHeight; ++rowBegin) {
+        for (int rowEnd = rowBegin + 1; rowEnd <= kHeight; ++rowEnd) {
           CAPTURE(std::string(kernels->name));
           CAPTURE(numWidth);
           CAPTURE(rowBegin);
           CAPTURE(rowEnd);
-          std::vector<std::uint8_t> marks(static_cast<std::size_t>(count), kForeign);
-          LongSpringsArgs args{};
-          args.numWidth = numWidth;
-          args.rowBegin = rowBegin;
-          args.rowEnd = rowEnd;
-          for (int axis = 0; axis < 3; ++axis) args.x[axis] = axes[axis].data() + front;
-          for (const double*& kind : args.rest) kind = rest.data();
-          args.limit = 1.1;
-          args.longKinds = marks.data();
-          const std::int64_t marked = kernels->markLongSprings(args);
-          std::int64_t bits = 0;
-          for (int p = 0; p < count; ++p) {
-            const std::uint8_t mark = marks[static_cast<std::size_t>(p)];
-            const bool own = p >= rowBegin * numWidth && p < rowEnd * numWidth;
-            REQUIRE((own ? (mark & kForeign) == 0 : mark == kForeign));
-            for (int kind = 0; own && kind < 6; ++kind) bits += mark >> kind & 1;
+          std::vector<std::uint8_t> marks(At(s.count + kGridPad), kForeign);
+          const bool marked = s.Mark(*kernels, rowBegin, rowEnd, marks) != 0;
+          bool expected = false;
+          for (int p = 0; p < s.count + kGridPad; ++p) {
+            std::uint8_t mark = kForeign;
+            if (p >= rowBegin * numWidth && p < rowEnd * numWidth) {
+              mark = 0;
+              for (int kind = 0; kind < kSpringKinds; ++kind) {
+                const bool near = Creates(numWidth, p, kind) && s.Squared(p, kind) > s.nearSquared[kind][At(p)];
+                mark = static_cast<std::uint8_t>(mark | (near ? 1u << kind : 0));
+              }
+              expected = expected || mark != 0;
+            }
+            REQUIRE(marks[At(p)] == mark);
           }
-          CHECK(marked == bits);
+          // A spring of the rows that follow may be told too.
+          REQUIRE((marked || !expected));
+          if (rowEnd == kHeight) REQUIRE(marked == expected);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("the strain limit is the plain sweep over all springs, whatever it skips") {
+  SplitMix64 random(31);
+  for (const int numWidth : {2, 3, 4, 5, 8, 13, 50}) {
+    for (const int numHeight : {2, 3, 7, 30}) {
+      for (int how = 0; how < kStretches; ++how) {
+        for (const std::uint64_t fixedShare : {0, 2, 10}) {
+          CAPTURE(numWidth);
+          CAPTURE(numHeight);
+          CAPTURE(how);
+          CAPTURE(fixedShare);
+          Sheet start(numWidth, numHeight, random);
+          StretchSheet(start, how, random);
+          for (auto& fixed : start.fixed) fixed = fixedShare != 0 && random.Next() % fixedShare == 0 ? 1 : 0;
+          for (const Kernels* kernels : RunnableKernels()) {
+            CAPTURE(std::string(kernels->name));
+            Sheet plain = start, swept = start;
+            for (int sweep = 0; sweep < 3; ++sweep) {
+              CAPTURE(sweep);
+              const std::int64_t limited = plain.LimitPlainly();
+              REQUIRE(swept.Limit(*kernels) == limited);
+              REQUIRE(Difference(swept.x, plain.x, 0, plain.count, Same) == "");
+              if (sweep == 0 && how >= 3 && how < 5 && fixedShare == 0) REQUIRE(limited > 0);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a sheet whose points are all fixed is not limited") {
+  SplitMix64 random(32);
+  Sheet s(9, 9, random);
+  StretchSheet(s, 3, random);
+  std::fill(s.fixed.begin(), s.fixed.end(), 1);
+  const Axes before = s.x;
+  for (const Kernels* kernels : RunnableKernels()) {
+    CHECK(s.Limit(*kernels) == 0);
+    CHECK(Difference(s.x, before, 0, s.count, SameBits) == "");
+  }
+}
+
+TEST_CASE("the greatest stretch is that of a plain loop, and the first of its points") {
+  SplitMix64 random(33);
+  for (const int numWidth : {2, 3, 4, 5, 7, 8, 9, 16, 50}) {
+    for (const int numHeight : {1, 2, 3, 10}) {
+      for (int how = 0; how <= kStretches; ++how) {
+        Sheet s(numWidth, numHeight, random);
+        if (how < kStretches) {
+          StretchSheet(s, how, random);
+        } else {  // all in one place: nothing is stretched
+          for (auto& axis : s.x.store) std::fill(axis.begin(), axis.end(), 3.5);
+        }
+        double greatest = 0;
+        int point = 0;
+        for (int p = 0; p < s.count; ++p) {
+          for (int kind = 0; kind < kSpringKinds; ++kind) {
+            if (!Creates(numWidth, p, kind)) continue;
+            const double ratio = s.Squared(p, kind) / (s.rest[kind][At(p)] * s.rest[kind][At(p)]);
+            if (ratio > greatest) greatest = ratio, point = p;
+          }
+        }
+        for (const Kernels* kernels : RunnableKernels()) {
+          CAPTURE(std::string(kernels->name));
+          CAPTURE(numWidth);
+          CAPTURE(numHeight);
+          CAPTURE(how);
+          GreatestStretchArgs args{};
+          args.numWidth = numWidth;
+          args.pointCount = s.count;
+          for (int axis = 0; axis < 3; ++axis) args.x[axis] = s.x.axis(axis);
+          for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = s.rest[kind].data();
+          const GreatestStretchResult found = kernels->greatestStretch(args);
+          REQUIRE(found.squaredRatio == greatest);
+          REQUIRE(found.point == point);
         }
       }
     }

@@ -1,0 +1,137 @@
+// Provot's limit on the length of springs. Included by kernels_impl.h inside the namespace of an
+// instruction set, like everything there; never elsewhere.
+
+std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
+  const std::int64_t n = a.numWidth, begin = a.rowBegin * n, end = a.rowEnd * n;
+  const std::int64_t step[kKinds] = {-1, -n, -n - 1, -n + 1, -2, -2 * n};
+  std::uint64_t any = 0;
+  for (std::int64_t p = begin; p < end; p += kLanes) {
+    const Pack3 x = Load3(a.x, p);
+    Mask near[kKinds];
+    for (int kind = 0; kind < kKinds; ++kind) {
+      near[kind] = RoughSquare(Load3(a.x, p + step[kind]) - x) > Load(a.nearSquared[kind] + p);
+    }
+    const std::uint64_t bytes = BytePerLane(near);
+    any |= bytes;
+    // What is beyond the last row belongs to others.
+    if (end - p >= kLanes) {
+      memcpy(a.nearKinds + p, &bytes, kLanes);
+    } else {
+      memcpy(a.nearKinds + p, &bytes, static_cast<std::size_t>(end - p));
+    }
+  }
+  return any != 0 ? 1 : 0;
+}
+
+GreatestStretchResult GreatestStretch(const GreatestStretchArgs& a) {
+  const std::int64_t n = a.numWidth, step[kKinds] = {-1, -n, -n - 1, -n + 1, -2, -2 * n};
+  GreatestStretchResult result{0, 0};
+  Pack greatest = All(0);
+  for (std::int64_t p = 0; p < a.pointCount; p += kLanes) {
+    const Pack3 x = Load3(a.x, p);
+    Pack ratio = All(0);
+    for (int kind = 0; kind < kKinds; ++kind) {
+      const Pack rest = Load(a.rest[kind] + p);  // kNoSpringRest: the ratio is zero
+      ratio = Max(ratio, SquaredLength(Load3(a.x, p + step[kind]) - x) / (rest * rest));
+    }
+    const unsigned beyond = Bits(ratio > greatest);
+    if (beyond == 0) continue;
+    double lanes[kLanes];
+    Store(lanes, ratio);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (lanes[lane] > result.squaredRatio) result = {lanes[lane], p + lane};
+    }
+    greatest = All(result.squaredRatio);
+  }
+  return result;
+}
+
+/// One sheet's sweep over all springs in creation order.
+struct StrainSweep {
+  const StrainArgs& a;
+  std::int64_t step[kKinds];
+  std::int64_t limited = 0;
+
+  /// Springs at an end of a spring that come after it: the points that create them, counted from the
+  /// one that creates it, and the bits of their kinds.
+  struct LaterSprings {
+    int count = 0;
+    std::int64_t creator[kKinds];
+    std::uint8_t bit[kKinds];
+  };
+  LaterSprings atCreator, atOther[kKinds];
+
+  explicit StrainSweep(const StrainArgs& args)
+      : a(args), step{-1, -a.numWidth, -a.numWidth - 1, -a.numWidth + 1, -2, -2 * a.numWidth} {
+    atCreator = Later(0);
+    for (int kind = 0; kind < kKinds; ++kind) atOther[kind] = Later(step[kind]);
+  }
+
+  /// Those at the point `end`.
+  LaterSprings Later(std::int64_t end) const {
+    LaterSprings later;
+    for (int kind = 0; kind < kKinds; ++kind) {
+      if (end - step[kind] <= 0) continue;
+      later.creator[later.count] = end - step[kind];
+      later.bit[later.count++] = static_cast<std::uint8_t>(1u << kind);
+    }
+    return later;
+  }
+
+  /// The springs that a point creates and that are marked.
+  void Visit(std::int64_t p) {
+    double px = a.x[0][p], py = a.x[1][p], pz = a.x[2][p];
+    const bool fixedP = a.fixed[p] != 0;
+    bool moved = false;
+    // Kinds ascend; marks that come while the loop runs are of later ones.
+    for (unsigned kinds = a.marks[p]; kinds != 0;) {
+      const int kind = LowestBit(kinds);
+      kinds &= kinds - 1;
+      const std::int64_t q = p + step[kind];
+      const double dx = a.x[0][q] - px, dy = a.x[1][q] - py, dz = a.x[2][q] - pz;
+      const double squared = dx * dx + dy * dy + dz * dz;
+      const double limit = a.limit * a.rest[kind][p];
+      if (squared < limit * limit * (1 - 1e-12)) continue;  // surely short enough
+      const double length = Sqrt(squared);
+      const bool fixedQ = a.fixed[q] != 0;
+      if (length <= limit || (fixedP && fixedQ)) continue;
+      const double factor = (length - limit) / length;
+      const double shareP = fixedP ? 0 : fixedQ ? 1 : 0.5, shareQ = fixedQ ? 0 : 1 - shareP;
+      const double ex = dx * factor, ey = dy * factor, ez = dz * factor;
+      px += shareP * ex, py += shareP * ey, pz += shareP * ez;
+      a.x[0][q] -= shareQ * ex, a.x[1][q] -= shareQ * ey, a.x[2][q] -= shareQ * ez;
+      ++limited;
+      moved = true;
+      if ((a.moved[p] += static_cast<float>(shareP * (length - limit))) > a.budget) {
+        kinds |= a.kinds[p] & (~0u << (kind + 1));
+        Mark(p, atCreator);
+      }
+      if ((a.moved[q] += static_cast<float>(shareQ * (length - limit))) > a.budget) Mark(p, atOther[kind]);
+    }
+    if (moved) a.x[0][p] = px, a.x[1][p] = py, a.x[2][p] = pz;
+  }
+
+  /// Marks springs that come after one that p creates. Where there is none, `kinds` has no bit.
+  void Mark(std::int64_t p, const LaterSprings& later) {
+    for (int i = 0; i < later.count; ++i) {
+      const std::int64_t creator = p + later.creator[i];
+      a.marks[creator] = static_cast<std::uint8_t>(a.marks[creator] | (a.kinds[creator] & later.bit[i]));
+    }
+  }
+};
+
+/// A spring that was not near its limit, and whose ends did not move far since, is not too long: the
+/// sweep visits the others.
+std::int64_t LimitStrain(const StrainArgs& a) {
+  StrainSweep sweep(a);
+  for (std::int64_t p = 0; p < a.pointCount; ++p) {
+    if (a.marks[p] != 0) {
+      sweep.Visit(p);
+      continue;
+    }
+    std::uint64_t eight;  // marks are few: step over stretches without any
+    memcpy(&eight, a.marks + p, sizeof eight);
+    if (eight == 0) p += 7;
+  }
+  return sweep.limited;
+}

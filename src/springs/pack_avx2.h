@@ -1,0 +1,135 @@
+// Four doubles at a time, with AVX2. Included by pack.h inside the namespace of an instruction set; never elsewhere.
+// What the functions do is said in pack_avx512.h.
+
+constexpr int kLanes = 4;
+
+struct Pack {
+  __m256d v;
+};
+struct Mask {
+  __m256d v;
+};
+inline Pack Load(const double* p) {
+  return {_mm256_loadu_pd(p)};
+}
+inline void Store(double* p, Pack a) {
+  _mm256_storeu_pd(p, a.v);
+}
+inline Pack All(double s) {
+  return {_mm256_set1_pd(s)};
+}
+inline Pack operator+(Pack a, Pack b) {
+  return {_mm256_add_pd(a.v, b.v)};
+}
+inline Pack operator-(Pack a, Pack b) {
+  return {_mm256_sub_pd(a.v, b.v)};
+}
+inline Pack operator*(Pack a, Pack b) {
+  return {_mm256_mul_pd(a.v, b.v)};
+}
+inline Pack operator/(Pack a, Pack b) {
+  return {_mm256_div_pd(a.v, b.v)};
+}
+inline Pack Sqrt(Pack a) {
+  return {_mm256_sqrt_pd(a.v)};
+}
+inline Mask operator>(Pack a, Pack b) {
+  return {_mm256_cmp_pd(a.v, b.v, _CMP_GT_OQ)};
+}
+inline Mask operator<=(Pack a, Pack b) {
+  return {_mm256_cmp_pd(a.v, b.v, _CMP_LE_OQ)};
+}
+inline Mask operator&(Mask a, Mask b) {
+  return {_mm256_and_pd(a.v, b.v)};
+}
+inline Mask operator|(Mask a, Mask b) {
+  return {_mm256_or_pd(a.v, b.v)};
+}
+inline Mask operator^(Mask a, Mask b) {
+  return {_mm256_xor_pd(a.v, b.v)};
+}
+inline Pack Select(Mask m, Pack a, Pack b) {
+  return {_mm256_blendv_pd(b.v, a.v, m.v)};
+}
+inline Pack Where(Mask m, Pack a) {
+  return {_mm256_and_pd(m.v, a.v)};
+}
+inline Pack Max(Pack a, Pack b) {
+  return {_mm256_max_pd(a.v, b.v)};
+}
+/// Lanes that are farther from zero than the bound, or not a number.
+inline Mask Outside(Pack a, double bound) {
+  const __m256d size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v);
+  return {_mm256_cmp_pd(size, _mm256_set1_pd(bound), _CMP_NLE_UQ)};
+}
+/// The lanes before `count`, which is at most kLanes.
+inline Mask FirstLanes(int count) {
+  return {_mm256_cmp_pd(_mm256_setr_pd(0, 1, 2, 3), _mm256_set1_pd(count), _CMP_LT_OQ)};
+}
+/// Four lanes of the eight of `a` and `b`, from lane `first` on.
+template <int first>
+inline Pack Shift(Pack a, Pack b) {
+  const __m256d middle = _mm256_permute2f128_pd(a.v, b.v, 0x21);
+  if constexpr (first == 1) return {_mm256_shuffle_pd(a.v, middle, 0b0101)};
+  if constexpr (first == 3) return {_mm256_shuffle_pd(middle, b.v, 0b0101)};
+  return {middle};
+}
+/// One bit per lane.
+inline unsigned Bits(Mask m) {
+  return static_cast<unsigned>(_mm256_movemask_pd(m.v));
+}
+
+struct Words {
+  __m256i v;
+};
+inline Words LoadWords(const std::uint64_t* p) {
+  return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))};
+}
+inline Words AllWords(std::uint64_t s) {
+  return {_mm256_set1_epi64x(static_cast<long long>(s))};
+}
+inline Words WordsOf(Pack a) {
+  return {_mm256_castpd_si256(a.v)};
+}
+inline Words operator+(Words a, Words b) {
+  return {_mm256_add_epi64(a.v, b.v)};
+}
+inline Words operator&(Words a, Words b) {
+  return {_mm256_and_si256(a.v, b.v)};
+}
+inline Words operator^(Words a, Words b) {
+  return {_mm256_xor_si256(a.v, b.v)};
+}
+inline Words operator|(Words a, Words b) {
+  return {_mm256_or_si256(a.v, b.v)};
+}
+template <int bits>
+inline Words Down(Words a) {
+  return {_mm256_srli_epi64(a.v, bits)};
+}
+template <int bits>
+inline Words Up(Words a) {
+  return {_mm256_slli_epi64(a.v, bits)};
+}
+inline unsigned Differ(Words a, Words b) {
+  return ~Bits(Mask{_mm256_castsi256_pd(_mm256_cmpeq_epi64(a.v, b.v))}) & 15;
+}
+inline unsigned Below(Words a, Words b) {
+  return Bits(Mask{_mm256_castsi256_pd(_mm256_cmpgt_epi64(b.v, a.v))});
+}
+inline Pack Gather(const double* from, const std::int32_t* index) {
+  return {_mm256_setr_pd(from[index[0]], from[index[1]], from[index[2]], from[index[3]])};
+}
+inline Pack MaybeFused(Pack a, Pack b, Pack c) {
+  return {_mm256_fmadd_pd(a.v, b.v, c.v)};
+}
+inline std::uint64_t BytePerLane(const Mask masks[6]) {
+  unsigned bits[6], any = 0;
+  for (int m = 0; m < 6; ++m) any |= bits[m] = Bits(masks[m]);
+  std::uint64_t bytes = 0;
+  for (int m = 0; m < 6 && any != 0; ++m) bytes |= std::uint64_t{bits[m] * 0x00204081 & 0x01010101} << m;
+  return bytes;
+}
+inline bool QuickSqrt(const Pack[6], Pack[6]) {
+  return false;
+}

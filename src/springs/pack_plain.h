@@ -1,0 +1,170 @@
+// Four doubles and eight floats at a time, in plain C++. Included by pack.h inside the namespace of an instruction set;
+// never elsewhere. What the functions do is said in pack_avx512.h and floats_avx2.h.
+
+constexpr int kLanes = 4;
+
+struct Pack {
+  double v[4];
+};
+struct Mask {
+  bool v[4];
+};
+inline Pack Load(const double* p) {
+  return {{p[0], p[1], p[2], p[3]}};
+}
+inline void Store(double* p, Pack a) {
+  for (int i = 0; i < 4; ++i) p[i] = a.v[i];
+}
+inline Pack All(double s) {
+  return {{s, s, s, s}};
+}
+template <class F>
+inline Pack Each(F f) {
+  return {{f(0), f(1), f(2), f(3)}};
+}
+inline Pack operator+(Pack a, Pack b) {
+  return Each([&](int i) { return a.v[i] + b.v[i]; });
+}
+inline Pack operator-(Pack a, Pack b) {
+  return Each([&](int i) { return a.v[i] - b.v[i]; });
+}
+inline Pack operator*(Pack a, Pack b) {
+  return Each([&](int i) { return a.v[i] * b.v[i]; });
+}
+inline Pack operator/(Pack a, Pack b) {
+  return Each([&](int i) { return a.v[i] / b.v[i]; });
+}
+inline Pack Sqrt(Pack a) {
+  return Each([&](int i) { return Sqrt(a.v[i]); });
+}
+inline Mask operator>(Pack a, Pack b) {
+  return {{a.v[0] > b.v[0], a.v[1] > b.v[1], a.v[2] > b.v[2], a.v[3] > b.v[3]}};
+}
+inline Mask operator<=(Pack a, Pack b) {
+  return {{a.v[0] <= b.v[0], a.v[1] <= b.v[1], a.v[2] <= b.v[2], a.v[3] <= b.v[3]}};
+}
+inline Mask operator&(Mask a, Mask b) {
+  return {{a.v[0] && b.v[0], a.v[1] && b.v[1], a.v[2] && b.v[2], a.v[3] && b.v[3]}};
+}
+inline Mask operator|(Mask a, Mask b) {
+  return {{a.v[0] || b.v[0], a.v[1] || b.v[1], a.v[2] || b.v[2], a.v[3] || b.v[3]}};
+}
+inline Mask operator^(Mask a, Mask b) {
+  return {{a.v[0] != b.v[0], a.v[1] != b.v[1], a.v[2] != b.v[2], a.v[3] != b.v[3]}};
+}
+inline Pack Select(Mask m, Pack a, Pack b) {
+  return Each([&](int i) { return m.v[i] ? a.v[i] : b.v[i]; });
+}
+inline Pack Where(Mask m, Pack a) {
+  return Each([&](int i) { return m.v[i] ? a.v[i] : 0.0; });
+}
+inline Pack Max(Pack a, Pack b) {
+  return Each([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
+}
+inline Mask Outside(Pack a, double bound) {
+  const auto outside = [&](int i) { return !(a.v[i] <= bound && a.v[i] >= -bound); };
+  return {{outside(0), outside(1), outside(2), outside(3)}};
+}
+inline Mask FirstLanes(int count) {
+  return {{0 < count, 1 < count, 2 < count, 3 < count}};
+}
+template <int first>
+inline Pack Shift(Pack a, Pack b) {
+  return Each([&](int i) { return i + first < 4 ? a.v[(i + first) % 4] : b.v[(i + first) % 4]; });
+}
+inline unsigned Bits(Mask m) {
+  return static_cast<unsigned>(m.v[0]) | static_cast<unsigned>(m.v[1]) << 1 | static_cast<unsigned>(m.v[2]) << 2 |
+         static_cast<unsigned>(m.v[3]) << 3;
+}
+
+struct Words {
+  std::uint64_t v[4];
+};
+inline Words LoadWords(const std::uint64_t* p) {
+  return {{p[0], p[1], p[2], p[3]}};
+}
+inline Words AllWords(std::uint64_t s) {
+  return {{s, s, s, s}};
+}
+inline Words WordsOf(Pack a) {
+  Words words;
+  memcpy(words.v, a.v, sizeof words.v);
+  return words;
+}
+template <class F>
+inline Words EachWord(F f) {
+  return {{f(0), f(1), f(2), f(3)}};
+}
+inline Words operator+(Words a, Words b) {
+  return EachWord([&](int i) { return a.v[i] + b.v[i]; });
+}
+inline Words operator&(Words a, Words b) {
+  return EachWord([&](int i) { return a.v[i] & b.v[i]; });
+}
+inline Words operator^(Words a, Words b) {
+  return EachWord([&](int i) { return a.v[i] ^ b.v[i]; });
+}
+inline Words operator|(Words a, Words b) {
+  return EachWord([&](int i) { return a.v[i] | b.v[i]; });
+}
+template <int bits>
+inline Words Down(Words a) {
+  return EachWord([&](int i) { return a.v[i] >> bits; });
+}
+template <int bits>
+inline Words Up(Words a) {
+  return EachWord([&](int i) { return a.v[i] << bits; });
+}
+inline unsigned Differ(Words a, Words b) {
+  return Bits(Mask{{a.v[0] != b.v[0], a.v[1] != b.v[1], a.v[2] != b.v[2], a.v[3] != b.v[3]}});
+}
+inline unsigned Below(Words a, Words b) {
+  return Bits(Mask{{a.v[0] < b.v[0], a.v[1] < b.v[1], a.v[2] < b.v[2], a.v[3] < b.v[3]}});
+}
+inline Pack Gather(const double* from, const std::int32_t* index) {
+  return Each([&](int i) { return from[index[i]]; });
+}
+inline Pack MaybeFused(Pack a, Pack b, Pack c) {
+  return a * b + c;
+}
+inline std::uint64_t BytePerLane(const Mask masks[6]) {
+  std::uint64_t bytes = 0;
+  for (int m = 0; m < 6; ++m) bytes |= std::uint64_t{Bits(masks[m]) * 0x00204081 & 0x01010101} << m;
+  return bytes;
+}
+inline bool QuickSqrt(const Pack[6], Pack[6]) {
+  return false;
+}
+
+struct FloatPack {
+  float v[8];
+};
+template <class F>
+inline FloatPack EachFloat(F f) {
+  return {{f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)}};
+}
+inline FloatPack LoadFloats(const float* p) {
+  return EachFloat([&](int i) { return p[i]; });
+}
+inline FloatPack AllFloats(float s) {
+  return EachFloat([&](int) { return s; });
+}
+inline FloatPack operator-(FloatPack a, FloatPack b) {
+  return EachFloat([&](int i) { return a.v[i] - b.v[i]; });
+}
+template <int turn>
+inline FloatPack Turn(FloatPack a) {
+  return EachFloat([&](int i) { return a.v[(i + turn) % 8]; });
+}
+inline unsigned AtMost(FloatPack x, FloatPack y, FloatPack z, float squared) {
+  unsigned bits = 0;
+  for (int i = 0; i < 8; ++i) {
+    bits |= (x.v[i] * x.v[i] + y.v[i] * y.v[i] + z.v[i] * z.v[i] <= squared ? 1u : 0u) << i;
+  }
+  return bits;
+}
+inline void GatherFloats(const double* from, const std::int32_t* index, int count, double origin, float* to) {
+  for (int i = 0; i < 8; ++i) {
+    to[i] = i < count ? static_cast<float>(from[index[i]] - origin) : 1e15f * static_cast<float>(i + 1);
+  }
+}
