@@ -314,8 +314,10 @@ class SceneReader {
       return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
     });
     if (dropped_ > 0) {
-      diagnostics_.push_back(
-          {Severity::Note, {scene_.name, 0, 0}, "and " + std::to_string(dropped_) + " more problems", {}, 0});
+      Diagnostic& rest = diagnostics_.emplace_back();
+      rest.severity = Severity::Note;
+      rest.place.file = scene_.name;
+      rest.message = "and " + std::to_string(dropped_) + " more problems";
     }
     if (hasErrors_) return std::move(diagnostics_);
     return {std::move(scene_), std::move(diagnostics_)};
