@@ -41,12 +41,16 @@ TEST_CASE("Numbers are written as people write them") {
 }
 
 TEST_CASE("Numbers are read as people type them") {
-  const std::pair<const char*, double> cases[] = {{".5", 0.5}, {"-.5", -0.5},  {"+.5", 0.5},   {"1.", 1},
-                                                  {"+5", 5},   {"1.e3", 1000}, {"-1.5", -1.5}, {"5e3", 5000}};
-  for (const auto& [text, number] : cases) {
-    CAPTURE(text);
-    REQUIRE(ParseTypedNumber(text).has_value());
-    CHECK(*ParseTypedNumber(text) == number);
+  struct Case {
+    const char* text;
+    double number;
+  };
+  const Case cases[] = {{".5", 0.5}, {"-.5", -0.5},  {"+.5", 0.5},   {"1.", 1},
+                        {"+5", 5},   {"1.e3", 1000}, {"-1.5", -1.5}, {"5e3", 5000}};
+  for (const Case& typed : cases) {
+    CAPTURE(typed.text);
+    REQUIRE(ParseTypedNumber(typed.text).has_value());
+    CHECK(*ParseTypedNumber(typed.text) == typed.number);
   }
   for (const char* bad : {"", ".", "-", "+", "+-1", "-+1", "-.", "1e", ".e3", "1..", "1,5", "nan", "5k", "0x1"}) {
     CHECK_MESSAGE(!ParseTypedNumber(bad).has_value(), bad);
