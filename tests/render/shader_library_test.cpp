@@ -110,8 +110,9 @@ TEST_CASE("uniforms that nothing sets are told, since what they do to the pictur
       {"uniform vec4 u_color;", ""},
   };
   for (const auto& [declaration, expected] : cases) {
-    CAPTURE(declaration);
-    const std::string text = declaration, type = text.substr(8, text.find(' ', 8) - 8);
+    const std::string text = declaration;
+    CAPTURE(text);
+    const std::string type = text.substr(8, text.find(' ', 8) - 8);
     const std::size_t at = 9 + type.size();
     const std::string name = text.substr(at, text.find_first_of("; ", at) - at);
     const std::string use = type == "sampler2D" ? "texture(" + name + ", vec2(0))" : "vec4(" + name + ".x)";
