@@ -121,7 +121,9 @@ std::int64_t Integrate(const IntegrateArgs& a) {
     return ForceRing{{start, start + room, start + 2 * room}, ring};
   };
   const ForceRing ofOwnRow = makeRing(0), ofNextRow = makeRing(1), complete = makeRing(2);
-  const int delay = (2 * n + kLanes - 1) / kLanes * kLanes + kLanes;  // of the points that move, after the creators
+  // Of the points that move, after the creators: so long that what they need is no longer on its way to
+  // the cache, since a load that takes parts of two such stores waits for both.
+  const int delay = (2 * n + kLanes - 1) / kLanes * kLanes + kForceDelay;
 
   // Never a negative zero: adding the zero of a spring that does not exist must not change a sum.
   const Pack3 weight = {All(0 + a.weight[0]), All(0 + a.weight[1]), All(0 + a.weight[2])};

@@ -131,9 +131,11 @@ struct Kernels {
   std::int64_t (*collidePlane)(const ColliderArgs&);
 };
 
-/// `integrate` keeps sums of forces for this many points, nine numbers each.
+/// `integrate` lets complete forces wait while it looks at about this many more points, ...
+inline constexpr int kForceDelay = 4 * kGridPad;
+/// ... and keeps sums of forces for this many, nine numbers each.
 inline int ForceRingSize(int numWidth) {
-  return (numWidth + kGridPad - 1) / kGridPad * kGridPad + 2 * kGridPad;
+  return (numWidth + kGridPad - 1) / kGridPad * kGridPad + kForceDelay + 2 * kGridPad;
 }
 /// Doubles of scratch that `integrate` needs for a cloth of that width; a multiple of kGridPad.
 inline int IntegrateScratch(int numWidth) {
