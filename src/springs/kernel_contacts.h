@@ -272,13 +272,15 @@ inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
   return contacts;
 }
 
+constexpr double kMostSpan = 1e9;  // m; far below the numbers that GatherFloats puts into empty lanes
+
 std::int64_t SeparateBuckets(const BucketArgs& a) {
   // No point moves farther than a part in stepsPerFrame of the distance that it keeps: farther pairs
   // than that stay apart. Coordinates in float are off by 2^-24 of the span: rather look twice.
   const double farthest = a.greatestApart * (1 + 1 / a.stepsPerFrame);
   const double floatFarthest = farthest * (1 + 1e-5) + 1e-6 * a.greatestSpan;
   const float nearSquared = static_cast<float>(floatFarthest * floatFarthest) + 1e-30f;  // whatever underflows
-  const int mostNear = a.greatestSpan < 1e9 ? NearPoints::kMost : 0;
+  const int mostNear = a.greatestSpan < kMostSpan ? NearPoints::kMost : 0;
   std::int64_t contacts = 0;
   PushLanes lanes;
   int bucket = a.bucketBegin;

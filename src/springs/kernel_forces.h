@@ -9,7 +9,7 @@ struct BlockSprings {
 };
 
 /// The kinds go side by side, since each is one long chain of operations.
-inline void Measure(const IntegrateArgs& a, std::int64_t at, const std::int64_t step[kKinds], BlockSprings& springs) {
+inline void Measure(const IntegrateArgs& a, std::int64_t at, const Steps& step, BlockSprings& springs) {
   const Pack3 x = Load3(a.x, at);
   Pack squared[kKinds];
   for (int k = 0; k < kKinds; ++k) springs.d[k] = Load3(a.x, at + step[k]) - x;
@@ -43,9 +43,10 @@ inline Mask Verlet(const IntegrateArgs& a, std::int64_t at, int count, const Pac
 }
 
 /// A spring's force on its creator, added to or taken from a sum of forces.
-inline void AddSpring(const IntegrateArgs& a, std::int64_t creator, int kind, double sign, double sum[3]) {
+inline void AddSpring(const IntegrateArgs& a, const Steps& step, std::int64_t creator, int kind, double sign,
+                      double sum[3]) {
   if (creator >= static_cast<std::int64_t>(a.numWidth) * a.numHeight || a.rest[kind][creator] == kNoSpringRest) return;
-  const std::int64_t other = creator + static_cast<std::int64_t>(kDj[kind]) * a.numWidth + kDi[kind];
+  const std::int64_t other = creator + step[kind];
   double d[3];
   for (int axis = 0; axis < 3; ++axis) d[axis] = a.x[axis][other] - a.x[axis][creator];
   const double length = Sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
@@ -57,17 +58,18 @@ inline void AddSpring(const IntegrateArgs& a, std::int64_t creator, int kind, do
 /// For sheets that have no room for a block between a point and the one below it: point by point.
 std::int64_t IntegrateNarrow(const IntegrateArgs& a) {
   const std::int64_t n = a.numWidth;
+  const Steps step(n);
   std::int64_t outOfBounds = 0;
   for (std::int64_t p = a.rowBegin * n; p < a.rowEnd * n; ++p) {
     double force[3] = {0 + a.weight[0], 0 + a.weight[1], 0 + a.weight[2]};  // see Integrate
     for (int axis = 0; axis < 3 && a.extraForce[0]; ++axis) force[axis] += a.extraForce[axis][p];
-    for (int kind = 0; kind < kKinds; ++kind) AddSpring(a, p, kind, 1, force);
-    AddSpring(a, p + 1, kLeft, -1, force);
-    AddSpring(a, p + 2, kTwoLeft, -1, force);
-    AddSpring(a, p + n - 1, kUpperRight, -1, force);
-    AddSpring(a, p + n, kUp, -1, force);
-    AddSpring(a, p + n + 1, kUpperLeft, -1, force);
-    AddSpring(a, p + 2 * n, kTwoUp, -1, force);
+    for (int kind = 0; kind < kKinds; ++kind) AddSpring(a, step, p, kind, 1, force);
+    AddSpring(a, step, p + 1, kLeft, -1, force);
+    AddSpring(a, step, p + 2, kTwoLeft, -1, force);
+    AddSpring(a, step, p + n - 1, kUpperRight, -1, force);
+    AddSpring(a, step, p + n, kUp, -1, force);
+    AddSpring(a, step, p + n + 1, kUpperLeft, -1, force);
+    AddSpring(a, step, p + 2 * n, kTwoUp, -1, force);
     for (int axis = 0; axis < 3; ++axis) {
       const double x = a.x[axis][p];
       const double next = x + a.keep * (x - a.previous[axis][p]) + a.forceToWay * force[axis];
@@ -110,7 +112,7 @@ std::int64_t Integrate(const IntegrateArgs& a) {
   const int n = a.numWidth;
   const std::int64_t begin = std::int64_t{a.rowBegin} * n, end = std::int64_t{a.rowEnd} * n;
   const std::int64_t endOfCreators = std::int64_t{a.rowEnd + 2 < a.numHeight ? a.rowEnd + 2 : a.numHeight} * n;
-  const std::int64_t step[kKinds] = {-1, -n, -n - 1, -n + 1, -2, -2 * n};
+  const Steps step(n);
 
   // The sums stand where the creators are whose springs went in last: for point p those of its own
   // row, for point p - n those of the next row too, for point p - 2 n all. So every block is stored at a

@@ -3,7 +3,7 @@
 
 std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
   const std::int64_t n = a.numWidth, begin = a.rowBegin * n, end = a.rowEnd * n;
-  const std::int64_t step[kKinds] = {-1, -n, -n - 1, -n + 1, -2, -2 * n};
+  const Steps step(n);
   std::uint64_t any = 0;
   for (std::int64_t p = begin; p < end; p += kLanes) {
     const Pack3 x = Load3(a.x, p);
@@ -24,7 +24,7 @@ std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
 }
 
 GreatestStretchResult GreatestStretch(const GreatestStretchArgs& a) {
-  const std::int64_t n = a.numWidth, step[kKinds] = {-1, -n, -n - 1, -n + 1, -2, -2 * n};
+  const Steps step(a.numWidth);
   GreatestStretchResult result{0, 0};
   Pack greatest = All(0);
   for (std::int64_t p = 0; p < a.pointCount; p += kLanes) {
@@ -49,7 +49,7 @@ GreatestStretchResult GreatestStretch(const GreatestStretchArgs& a) {
 /// One sheet's sweep over all springs in creation order.
 struct StrainSweep {
   const StrainArgs& a;
-  std::int64_t step[kKinds];
+  const Steps step;
   std::int64_t limited = 0;
 
   /// Springs at an end of a spring that come after it: the points that create them, counted from the
@@ -61,8 +61,7 @@ struct StrainSweep {
   };
   LaterSprings atCreator, atOther[kKinds];
 
-  explicit StrainSweep(const StrainArgs& args)
-      : a(args), step{-1, -a.numWidth, -a.numWidth - 1, -a.numWidth + 1, -2, -2 * a.numWidth} {
+  explicit StrainSweep(const StrainArgs& args) : a(args), step(a.numWidth) {
     atCreator = Later(0);
     for (int kind = 0; kind < kKinds; ++kind) atOther[kind] = Later(step[kind]);
   }

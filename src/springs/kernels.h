@@ -56,6 +56,7 @@ struct GreatestStretchResult {
   std::int64_t point;   ///< That creates the spring.
 };
 
+/// Zeros that the strain limit needs behind the bits of the last point: springs created there do not exist.
 inline int MarkPadding(int numWidth) {
   return 2 * numWidth + kGridPad;
 }

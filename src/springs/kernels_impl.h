@@ -54,10 +54,18 @@ enum { kLeft, kUp, kUpperLeft, kUpperRight, kTwoLeft, kTwoUp, kKinds };
 constexpr int kDi[kKinds] = {-1, 0, -1, 1, -2, 0};
 constexpr int kDj[kKinds] = {0, -1, -1, -1, 0, -2};
 
-#include "springs/kernel_forces.h"
+/// From the index of a spring's creator to that of its other end, for each kind.
+struct Steps {
+  std::int64_t of[kKinds];
+  explicit Steps(std::int64_t numWidth) {
+    for (int kind = 0; kind < kKinds; ++kind) of[kind] = kDj[kind] * numWidth + kDi[kind];
+  }
+  std::int64_t operator[](int kind) const { return of[kind]; }
+};
 
 #include "springs/kernel_colliders.h"
 #include "springs/kernel_contacts.h"
+#include "springs/kernel_forces.h"
 #include "springs/kernel_strain.h"
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -11,14 +10,12 @@
 namespace percale::springs {
 namespace {
 
-constexpr double kStretchLimit = 1.1;     // of the rest length; Provot 1995, section 5
-constexpr double kNearShare = 0.01;       // a spring this close to the limit is looked at; tuned on pinned2
-constexpr double kBendingShare = 0.2;     // bending springs have this share of ks
-constexpr double kBoxesPerSpacing = 3;    // a box of the spatial map spans three spacings of the grid
-constexpr double kBound = 1e6;            // m; a cloth this far out has diverged
-constexpr int kPointsPerChunk = 2560;     // of loops over points; below it a second thread does not pay
-constexpr int kRowPointsPerChunk = 2500;  // of loops over whole rows
-constexpr int kBucketPointsPerChunk = 2560;
+constexpr double kStretchLimit = 1.1;   // of the rest length; Provot 1995, section 5
+constexpr double kNearShare = 0.01;     // a spring this close to the limit is looked at; tuned on pinned2
+constexpr double kBendingShare = 0.2;   // bending springs have this share of ks
+constexpr double kBoxesPerSpacing = 3;  // a box of the spatial map spans three spacings of the grid
+constexpr double kBound = 1e6;          // m; a cloth this far out has diverged
+constexpr int kPointsPerChunk = 2560;   // of all loops; below it a second thread does not pay
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t Index(std::int64_t i) {
@@ -71,7 +68,7 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
   map_.Reserve(pointCount_);
   scratchPerChunk_ = IntegrateScratch(widest);
   integrateScratch_.assign(Index(chunkCount_) * Index(scratchPerChunk_), 0);
-  const int bucketChunks = pointCount_ / kBucketPointsPerChunk + 2;
+  const int bucketChunks = pointCount_ / kPointsPerChunk + 2;
   bucketChunks_.reserve(Index(bucketChunks));
   bucketScratch_.resize(3 * (count + Index(kGridPad * bucketChunks)));
   chunkCounts_.resize(Index(std::max({chunkCount_, bucketChunks, PointChunks()})));
@@ -105,16 +102,13 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
       }
     }
   }
-  for (int kind = 0; kind < kSpringKinds; ++kind) {
-    sheet.step[kind] = kSpringSteps[kind].dj * sheet.numWidth + kSpringSteps[kind].di;
-  }
   // Both ends of a spring may spend it, and sums in float round.
   sheet.moveBudget = static_cast<float>(0.49 * kNearShare * kStretchLimit * shortest);
   sheet.nearKinds.assign(Index(model.PointCount() + MarkPadding(model.numWidth)), 0);
   sheet.moved.assign(Index(model.PointCount()), 0);
   sheet.rowsPerChunk = sheet.numHeight;
   if (executor_.threads() > 1) {
-    sheet.rowsPerChunk = std::max(16, (kRowPointsPerChunk + sheet.numWidth - 1) / sheet.numWidth);
+    sheet.rowsPerChunk = std::max(16, (kPointsPerChunk + sheet.numWidth - 1) / sheet.numWidth);
   }
   sheet.firstChunk = chunkCount_;
   chunkCount_ += (sheet.numHeight + sheet.rowsPerChunk - 1) / sheet.rowsPerChunk;
@@ -330,7 +324,7 @@ void SpringsEngine::FindContacts() {
   std::int32_t points = 0, pointsBefore = 0;
   for (int bucket = 0; bucket < map_.BucketCount(); ++bucket) {
     points += map_.Count()[bucket];
-    if (points - pointsBefore < kBucketPointsPerChunk && bucket + 1 < map_.BucketCount()) continue;
+    if (points - pointsBefore < kPointsPerChunk && bucket + 1 < map_.BucketCount()) continue;
     bucketChunks_.push_back({bucket + 1, pointsBefore});
     pointsBefore = points;
   }

@@ -6,10 +6,11 @@
 ///
 /// The rules visit points and springs in creation order, and a later visit sees what an earlier one
 /// moved. The stages keep that result to the bit without walking in that order:
-///  - forces read positions only, so points gather them row by row;
+///  - forces read positions only, so they are summed as the springs come by;
 ///  - boxes of the spatial map share no points, so they are independent;
 ///  - colliders act on each point alone;
-///  - the strain limit walks in order, but only over springs that are too long or were touched.
+///  - the strain limit walks in order, but only over springs near their limit or near a point that
+///    moved far.
 
 #include <cstdint>
 #include <span>
@@ -34,11 +35,10 @@ struct Sheet {
       rest[kSpringKinds];  ///< Per point that creates the spring [m]; kNoSpringRest where there is none.
   AlignedVector<double> nearSquared[kSpringKinds];  ///< Likewise the square of the length from which on a spring
                                                     ///< is near the strain limit [m^2]; or infinity.
-  std::vector<std::uint8_t> kinds;                  ///< Per point: a bit for each kind of spring that it creates.
-  std::vector<std::uint8_t> nearKinds;              ///< Per point: those that are near the strain limit; then zeros.
-  std::vector<float> moved;                         ///< Per point: how far the strain limit moved it [m].
+  std::vector<std::uint8_t> kinds;      ///< Per point: a bit for each kind of spring that it creates; then zeros.
+  std::vector<std::uint8_t> nearKinds;  ///< Per point: those that are near the strain limit; then zeros.
+  std::vector<float> moved;             ///< Per point: how far the strain limit moved it [m].
   float moveBudget = 0;                 ///< How far a point may move before it concerns springs that were not near.
-  int step[kSpringKinds] = {};          ///< From the index of the creator to that of the other end.
   double stiffness[kSpringKinds] = {};  ///< [N/m]; 0 for kinds that are not enabled.
   double mass = 0;                      ///< Of a point [kg].
   double keep = 1;                      ///< Share of the velocity kept in a step.
