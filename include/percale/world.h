@@ -14,7 +14,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "percale/interaction.h"
 #include "percale/mesh.h"
 #include "percale/scene.h"
 
@@ -81,6 +83,25 @@ class ClothView {
   std::span<const std::int32_t> pinned_;
 };
 
+/// Everything that the future of a World depends on, at the end of a frame. From it the same World goes
+/// on to the same bits.
+struct WorldState {
+  struct Cloth {
+    std::vector<Vec3> positions;  ///< [m], one per vertex.
+    std::vector<Vec3> previous;   ///< One step before [m].
+    std::vector<Vec3> anchors;    ///< Where each pin is held, apart from its motions [m]; in the order of pinned().
+  };
+  std::shared_ptr<const Scene> scene;  ///< The settings of that moment.
+  StepReport report;
+  int restFrames = 0;  ///< For how many frames on end no point has moved more than 1 mm.
+  std::vector<Cloth> cloths;
+  std::vector<Handle> handles;
+  std::vector<Ball> balls;
+  std::vector<Gust> gusts;
+
+  std::size_t Bytes() const;  ///< Of memory, without the scene.
+};
+
 struct WorldOptions {
   int threads = 0;  ///< 0: as many as the machine has cores. The result does not depend on it.
 };
@@ -95,18 +116,35 @@ class World {
 
   /// Runs one frame: simulation.stepsPerFrame steps. After a divergence it does nothing more.
   const StepReport& Step();
-  /// Back to the start, with the settings as they are now.
+  /// Back to the start, with the settings as they are now: without handles, balls and gusts.
   void Reset();
   /// Takes changed settings. The state is kept where the cloths stay the same grids with the same
-  /// rest shape (everything but parameters of Effect::Rebuild); otherwise it starts anew.
+  /// rest shape (everything but parameters of Effect::Rebuild); otherwise it starts anew. Points that
+  /// are pinned now are held where they are, those that are not any more go free.
   /// Returns whether the state was kept. `scene` must pass CheckScene.
   bool Apply(Scene scene);
 
+  /// Grips from now on, in place of those there were. The numbers of cloth and vertex must exist, and
+  /// Check find nothing.
+  void SetHandles(std::vector<Handle> handles);
+  /// One more ball; of more than kMostBalls the oldest goes. Check must find nothing.
+  void AddBall(const Ball& ball);
+  /// One more gust, from its start on. Check must find nothing.
+  void AddGust(const Gust& gust);
+  std::span<const Handle> handles() const;
+  std::span<const Ball> balls() const;  ///< Those more than 100 m away are gone.
+
+  /// Copies the state, into memory that is used again.
+  void Save(WorldState& state) const;
+  /// Goes back to a state that a World of the same cloths has saved, its settings included.
+  void Restore(const WorldState& state);
+
   const Scene& scene() const;
-  const StepReport& report() const;  ///< Of the last frame; zeros before the first.
+  std::shared_ptr<const Scene> sharedScene() const;  ///< The same, for who needs it longer.
+  const StepReport& report() const;                  ///< Of the last frame; zeros before the first.
   int ClothCount() const;
   ClothView Cloth(int index) const;  ///< 0 <= index < ClothCount().
-  /// A fingerprint of all positions, to the bit: equal runs have equal hashes.
+  /// A fingerprint of all positions and balls, to the bit: equal runs have equal hashes.
   std::uint64_t StateHash() const;
 
  private:

@@ -35,11 +35,15 @@ ClothModel MakeGrid(const ClothSettings& settings) {
       model.triangles.push_back({b, c, d});
     }
   }
-
-  for (const GridPoint& pin : settings.pinned) model.pinned.push_back(pin.j * nw + pin.i);
-  std::sort(model.pinned.begin(), model.pinned.end());
-  model.pinned.erase(std::unique(model.pinned.begin(), model.pinned.end()), model.pinned.end());
   return model;
+}
+
+std::vector<std::int32_t> PinnedVertices(const ClothSettings& settings) {
+  std::vector<std::int32_t> vertices;
+  for (const GridPoint& pin : settings.pinned) vertices.push_back(pin.j * settings.numWidthPoints + pin.i);
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
 }
 
 double PointMass(const ClothSettings& cloth) {

@@ -11,17 +11,19 @@
 namespace percale {
 
 struct ClothModel {
-  int numWidth = 0, numHeight = 0;   ///< Grid points; point (i, j) is index j * numWidth + i.
-  std::vector<Vec3> start;           ///< Positions at the start [m].
-  std::vector<Vec2> uv;              ///< (i / (numWidth - 1), j / (numHeight - 1)).
-  std::vector<Triangle> triangles;   ///< Two per quad: A C B and B C D.
-  std::vector<std::int32_t> pinned;  ///< Ascending, each once.
+  int numWidth = 0, numHeight = 0;  ///< Grid points; point (i, j) is index j * numWidth + i.
+  std::vector<Vec3> start;          ///< Positions at the start [m].
+  std::vector<Vec2> uv;             ///< (i / (numWidth - 1), j / (numHeight - 1)).
+  std::vector<Triangle> triangles;  ///< Two per quad: A C B and B C D.
 
   int PointCount() const { return numWidth * numHeight; }
 };
 
 /// The regular grid of the classic simulator. `settings` must be valid.
 ClothModel MakeGrid(const ClothSettings& settings);
+
+/// The vertices that the settings pin, ascending, each once.
+std::vector<std::int32_t> PinnedVertices(const ClothSettings& settings);
 
 /// Mass of one point of the cloth [kg].
 double PointMass(const ClothSettings& settings);

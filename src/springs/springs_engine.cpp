@@ -60,7 +60,7 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
     previous_[axis] = previousStore_[axis].data() + GridPadding(widest);
   }
   fixed_.assign(count, 0);
-  for (const PinnedPoint& pin : pins_) fixed_[Index(pin.point)] = 1;
+  touched_.reserve(count);
   boxKeys_.resize(count);
   boxChanges_.resize(count);
   boxesWrap_.assign(Index(PointChunks()), 0);
@@ -76,7 +76,7 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
   Reset();
 }
 
-/// Appends a cloth: its points, springs, pins and chunks.
+/// Appends a cloth: its points, springs and chunks.
 void SpringsEngine::AddSheet(const ClothModel& model) {
   Sheet sheet;
   sheet.numWidth = model.numWidth;
@@ -113,10 +113,6 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
   sheet.firstChunk = chunkCount_;
   chunkCount_ += (sheet.numHeight + sheet.rowsPerChunk - 1) / sheet.rowsPerChunk;
   start_.insert(start_.end(), model.start.begin(), model.start.end());
-  for (const std::int32_t pin : model.pinned) {
-    const Vec3 at = model.start[Index(pin)];
-    pins_.push_back({sheet.firstPoint + pin, at, at, at, 0, 0});
-  }
   sheets_.push_back(std::move(sheet));
 }
 
@@ -148,24 +144,43 @@ void SpringsEngine::Configure(const Scene& scene) {
   boxSize_[1] = height;
   boxSize_[2] = std::max(width, height);
   bound_ = std::min(kBound, 0x1p50 * std::min(width, height));  // beyond it box indices would not be exact
-  if (scene_.wind.drag > 0) {
-    for (auto& axis : windForce_) axis.resize(Index(pointCount_ + kGridPad));
-  }
 
+  UpdatePins();
+}
+
+/// Pins that there were stay where they are held; what is pinned from now on is held where it is.
+void SpringsEngine::UpdatePins() {
+  const std::vector<PinnedPoint> old = std::exchange(pins_, {});
+  for (const PinnedPoint& pin : old) fixed_[Index(pin.point)] = 0;
   pinMotionOf_.clear();
-  for (PinnedPoint& pin : pins_) {
-    pin.firstMotion = static_cast<int>(pinMotionOf_.size());
-    for (std::size_t m = 0; m < scene_.pinMotions.size(); ++m) {
-      const PinMotion& motion = scene_.pinMotions[m];
-      const Sheet& sheet = sheets_[Index(motion.cloth)];
-      const int vertex = pin.point - sheet.firstPoint;
-      if (vertex < 0 || vertex >= sheet.PointCount()) continue;
-      const bool named = std::any_of(motion.points.begin(), motion.points.end(),
-                                     [&](const GridPoint& g) { return g.j * sheet.numWidth + g.i == vertex; });
-      if (named || motion.points.empty()) pinMotionOf_.push_back(static_cast<int>(m));
+  for (std::size_t c = 0; c < sheets_.size(); ++c) {
+    Sheet& sheet = sheets_[c];
+    sheet.firstPin = pins_.size();
+    for (const std::int32_t vertex : PinnedVertices(scene_.cloths[c])) {
+      const int point = sheet.firstPoint + vertex;
+      const Vec3 at = Get(positions_, point);
+      PinnedPoint pin{.point = point, .anchor = at, .target = at, .previousTarget = at};
+      pin.firstMotion = static_cast<int>(pinMotionOf_.size());
+      for (std::size_t m = 0; m < scene_.pinMotions.size(); ++m) {
+        const PinMotion& motion = scene_.pinMotions[m];
+        if (Index(motion.cloth) != c) continue;
+        const bool named = std::any_of(motion.points.begin(), motion.points.end(),
+                                       [&](const GridPoint& g) { return g.j * sheet.numWidth + g.i == vertex; });
+        if (named || motion.points.empty()) pinMotionOf_.push_back(static_cast<int>(m));
+      }
+      pin.motionCount = static_cast<int>(pinMotionOf_.size()) - pin.firstMotion;
+      const auto before = std::lower_bound(old.begin(), old.end(), point,
+                                           [](const PinnedPoint& p, int other) { return p.point < other; });
+      if (before != old.end() && before->point == point) {
+        pin.anchor = before->anchor;
+        pin.target = pin.previousTarget = before->target;  // a pin that is no longer carried stands still
+      } else {
+        pin.anchor = at - MotionOf(pin, time_);
+      }
+      fixed_[Index(point)] = 1;
+      pins_.push_back(pin);
     }
-    pin.motionCount = static_cast<int>(pinMotionOf_.size()) - pin.firstMotion;
-    pin.previousTarget = pin.target;  // a pin that is no longer carried stands still
+    sheet.pinCount = pins_.size() - sheet.firstPin;
   }
 }
 
@@ -174,7 +189,13 @@ void SpringsEngine::Reset() {
     Put(positions_, p, start_[Index(p)]);
     Put(previous_, p, start_[Index(p)]);
   }
-  for (PinnedPoint& pin : pins_) pin.target = pin.previousTarget = pin.start;
+  for (PinnedPoint& pin : pins_) pin.anchor = pin.target = pin.previousTarget = start_[Index(pin.point)];
+  time_ = 0;
+  ForgetBoxes();
+}
+
+/// The points are somewhere else: the spatial map starts anew.
+void SpringsEngine::ForgetBoxes() {
   std::fill(boxesWrap_.begin(), boxesWrap_.end(), 0);
   std::fill(boxKeys_.begin(), boxKeys_.end(), ~std::uint64_t{0});
   mapBuilt_ = false;
@@ -212,23 +233,41 @@ std::int64_t SpringsEngine::SumChunkCounts(int chunks) const {
 }
 
 void SpringsEngine::MoveColliders(double time) {
+  time_ = time;
   if (pinMotionOf_.empty()) return;
   for (PinnedPoint& pin : pins_) {
-    Vec3 offset;
-    for (int m = 0; m < pin.motionCount; ++m) {
-      const PinMotion& motion = scene_.pinMotions[Index(pinMotionOf_[Index(pin.firstMotion + m)])];
-      const double s = std::clamp((time - motion.start) / (motion.end - motion.start), 0.0, 1.0);
-      offset += motion.displacement * (s * s * (3 - 2 * s));
-    }
     pin.previousTarget = pin.target;
-    pin.target = pin.start + offset;
+    pin.target = pin.anchor + MotionOf(pin, time);
     Put(positions_, pin.point, pin.target);
   }
 }
 
-void SpringsEngine::ComputeWind(double time) {
+/// How far its motions have carried a pin [m].
+Vec3 SpringsEngine::MotionOf(const PinnedPoint& pin, double time) const {
+  Vec3 offset;
+  for (int m = 0; m < pin.motionCount; ++m) {
+    const PinMotion& motion = scene_.pinMotions[Index(pinMotionOf_[Index(pin.firstMotion + m)])];
+    const double s = std::clamp((time - motion.start) / (motion.end - motion.start), 0.0, 1.0);
+    offset += motion.displacement * (s * s * (3 - 2 * s));
+  }
+  return offset;
+}
+
+/// Several winds at once act as one: their drags add, and so do their pushes.
+void SpringsEngine::ComputeWind(double time, std::span<const Gust> gusts) {
+  for (auto& axis : windForce_) axis.resize(Index(pointCount_ + kGridPad));
   const WindSettings& wind = scene_.wind;
-  const Vec3 air = wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
+  double drag = wind.drag;
+  Vec3 air = wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
+  for (const Gust& gust : gusts) {
+    const double phase = std::numbers::pi * (time - gust.start) / gust.duration;
+    if (phase <= 0 || phase >= std::numbers::pi) continue;
+    const double strength = std::sin(phase) * std::sin(phase);
+    const double added = gust.drag * strength;
+    if (drag + added <= 0) continue;
+    air = (air * drag + gust.velocity * (strength * added)) / (drag + added);
+    drag += added;
+  }
   const auto position = [&](int p) { return Get(positions_, p); };
   double* const windForces[3] = {windForce_[0].data(), windForce_[1].data(), windForce_[2].data()};
   ForRowChunks([&](const Sheet& sheet, int rowBegin, int rowEnd, int) {
@@ -246,7 +285,7 @@ void SpringsEngine::ComputeWind(double time) {
         Vec3 force;
         if (length > 0) {
           const Vec3 velocity = (position(p) - Get(previous_, p)) / dt_;
-          force = normal * (0.25 * wind.drag * Dot(normal, air - velocity) / length);
+          force = normal * (0.25 * drag * Dot(normal, air - velocity) / length);
         }
         Put(windForces, p, force);
       }
@@ -254,9 +293,9 @@ void SpringsEngine::ComputeWind(double time) {
   });
 }
 
-bool SpringsEngine::ApplyForces(double time) {
-  const bool windy = scene_.wind.drag > 0;
-  if (windy) ComputeWind(time);
+bool SpringsEngine::ApplyForces(double time, std::span<const Gust> gusts) {
+  const bool windy = scene_.wind.drag > 0 || !gusts.empty();
+  if (windy) ComputeWind(time, gusts);
   const Vec3 gravity = scene_.simulation.gravity;
   ForRowChunks([&](const Sheet& sheet, int rowBegin, int rowEnd, int chunk) {
     IntegrateArgs args{};
@@ -412,6 +451,50 @@ void SpringsEngine::Collide() {
   counts_.colliderContacts += SumChunkCounts(PointChunks());
 }
 
+void SpringsEngine::Pull(const Handle& handle) {
+  const Sheet& sheet = sheets_[Index(handle.cloth)];
+  const int centre = sheet.firstPoint + handle.vertex;
+  if (fixed_[Index(centre)]) return;
+  // m (x' - x) / dt^2 = k (target - x') - c (x' - before) / dt, with k = m w^2 and c = 2 m w.
+  const double w = 2 * std::numbers::pi * handle.frequency * dt_;
+  const Vec3 x = Get(positions_, centre), before = Get(previous_, centre);
+  const Vec3 way = ((handle.target - x) * (w * w) + (before - x) * (2 * w)) / (1 + w * w + 2 * w);
+  const Vec3 restCentre = start_[Index(centre)];
+  for (int p = sheet.firstPoint; p < sheet.firstPoint + sheet.PointCount(); ++p) {
+    const Vec3 d = start_[Index(p)] - restCentre;
+    const double share = 1 - Dot(d, d) / (handle.radius * handle.radius);
+    if (fixed_[Index(p)] || share <= 0) continue;
+    Put(positions_, p, Get(positions_, p) + way * (share * share));
+  }
+}
+
+void SpringsEngine::CollideBall(Ball& ball) {
+  touched_.clear();
+  double touchedMass = 0;
+  Vec3 momentum;  // that the points would gain if they alone gave way [kg m]
+  const auto push = [&](int p) {
+    const Vec3 d = Get(positions_, p) - ball.position;
+    const double distance = Length(d);
+    return UnitOr(d, {0, 1, 0}) * (ball.radius - distance);
+  };
+  for (const Sheet& sheet : sheets_) {
+    for (int p = sheet.firstPoint; p < sheet.firstPoint + sheet.PointCount(); ++p) {
+      const Vec3 d = Get(positions_, p) - ball.position;
+      if (Dot(d, d) >= ball.radius * ball.radius || fixed_[Index(p)]) continue;
+      touched_.push_back(p);
+      touchedMass += sheet.mass;
+      momentum += push(p) * sheet.mass;
+    }
+  }
+  if (touched_.empty()) return;
+  const double share = ball.mass / (ball.mass + touchedMass);
+  for (const std::int32_t p : touched_) Put(positions_, p, Get(positions_, p) + push(p) * share);
+  const Vec3 way = momentum * (-share / ball.mass);
+  ball.position += way;
+  ball.velocity += way / dt_;
+  counts_.colliderContacts += static_cast<std::int64_t>(touched_.size());
+}
+
 void SpringsEngine::LimitStrain() {
   ForRowChunks([&](Sheet& sheet, int rowBegin, int rowEnd, int chunk) {
     LongSpringsArgs args{};
@@ -453,6 +536,31 @@ void SpringsEngine::ReadState(int cloth, std::span<Vec3> positions, std::span<Ve
     positions[v] = Get(positions_, p);
     previous[v] = Get(previous_, p);
   }
+}
+
+void SpringsEngine::ReadAnchors(int cloth, std::vector<Vec3>& anchors) const {
+  const Sheet& sheet = sheets_[Index(cloth)];
+  anchors.clear();
+  for (std::size_t k = sheet.firstPin; k < sheet.firstPin + sheet.pinCount; ++k) anchors.push_back(pins_[k].anchor);
+}
+
+void SpringsEngine::WriteState(int cloth, std::span<const Vec3> positions, std::span<const Vec3> previous,
+                               std::span<const Vec3> anchors, double time) {
+  const Sheet& sheet = sheets_[Index(cloth)];
+  assert(positions.size() == Index(sheet.PointCount()) && previous.size() == positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const int p = sheet.firstPoint + static_cast<int>(v);
+    Put(positions_, p, positions[v]);
+    Put(previous_, p, previous[v]);
+  }
+  assert(anchors.size() == sheet.pinCount);
+  for (std::size_t k = 0; k < sheet.pinCount; ++k) {
+    PinnedPoint& pin = pins_[sheet.firstPin + k];
+    pin.anchor = anchors[k];
+    pin.target = pin.previousTarget = Get(positions_, pin.point);
+  }
+  time_ = time;
+  ForgetBoxes();
 }
 
 Stretch SpringsEngine::GreatestStretch() const {

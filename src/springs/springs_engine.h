@@ -22,6 +22,7 @@
 #include "core/executor.h"
 #include "mesh/cloth_model.h"
 #include "mesh/engine_types.h"
+#include "percale/interaction.h"
 #include "percale/scene.h"
 #include "springs/kernels.h"
 
@@ -31,6 +32,7 @@ namespace percale::springs {
 struct Sheet {
   int numWidth = 0, numHeight = 0;
   int firstPoint = 0;
+  std::size_t firstPin = 0, pinCount = 0;
   AlignedVector<double>
       rest[kSpringKinds];  ///< Per point that creates the spring [m]; kNoSpringRest where there is none.
   AlignedVector<double> nearSquared[kSpringKinds];  ///< Likewise the square of the length from which on a spring
@@ -62,10 +64,16 @@ class SpringsEngine {
   /// Puts pins where the scene's motions have them at `time` [s], the end of the step.
   void MoveColliders(double time);
   /// Forces and integration. Returns false when a coordinate went out of bounds.
-  bool ApplyForces(double time);
+  bool ApplyForces(double time, std::span<const Gust> gusts = {});
+  /// Draws a vertex and the cloth around it to the handle's target.
+  void Pull(const Handle& handle);
   void FindContacts();
   void SelfCollide();
   void Collide();
+  /// Pushes cloth and ball apart, each by the other's share of their masses, and changes the ball's
+  /// velocity by the way it was pushed, as Verlet's rule does with the points'. Momentum is kept, apart
+  /// from pinned points, which a ball does not feel.
+  void CollideBall(Ball& ball);
   void LimitStrain();
 
   /// What was done since the last call.
@@ -73,6 +81,11 @@ class SpringsEngine {
 
   /// Copies a cloth's positions and those of one step ago [m]. Spans of the cloth's point count.
   void ReadState(int cloth, std::span<Vec3> positions, std::span<Vec3> previous) const;
+  /// Where the pins of a cloth are held apart from their motions [m], by vertex.
+  void ReadAnchors(int cloth, std::vector<Vec3>& anchors) const;
+  /// Puts a cloth into the state that it has at `time` [s].
+  void WriteState(int cloth, std::span<const Vec3> positions, std::span<const Vec3> previous,
+                  std::span<const Vec3> anchors, double time);
   /// The longest of all springs, whatever kinds are enabled.
   Stretch GreatestStretch() const;
   double Mass(int cloth) const { return sheets_[static_cast<std::size_t>(cloth)].mass; }
@@ -82,14 +95,17 @@ class SpringsEngine {
  private:
   struct PinnedPoint {
     int point;
-    Vec3 start;                    // where it is without motions
-    Vec3 target;                   // where it is now
-    Vec3 previousTarget;           // where it was one step ago
-    int firstMotion, motionCount;  // in pinMotionOf_
+    Vec3 anchor;                           // where it is without motions
+    Vec3 target;                           // where it is now
+    Vec3 previousTarget;                   // where it was one step ago
+    int firstMotion = 0, motionCount = 0;  // in pinMotionOf_
   };
 
   void AddSheet(const ClothModel& model);
-  void ComputeWind(double time);
+  void UpdatePins();
+  Vec3 MotionOf(const PinnedPoint& pin, double time) const;
+  void ForgetBoxes();
+  void ComputeWind(double time, std::span<const Gust> gusts);
   void HoldPins(int begin, int end);
   std::int64_t HashKeys(int begin, int end);
   template <class Body>
@@ -103,6 +119,7 @@ class SpringsEngine {
   const Kernels& kernels_;
   Scene scene_;
   double dt_ = 0;
+  double time_ = 0;  // of the last step [s]
   int pointCount_ = 0;
   int chunkCount_ = 0;
   std::vector<Sheet> sheets_;
@@ -125,6 +142,7 @@ class SpringsEngine {
   double bound_ = 0;
   double greatestApart_ = 0;  // greatest sum of two thicknesses [m]
   bool sameThickness_ = true;
+  std::vector<std::int32_t> touched_;  // of CollideBall
   BoxMap map_;
   int scratchPerChunk_ = 0;
   AlignedVector<double> integrateScratch_;  // per chunk of rows

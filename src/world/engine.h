@@ -10,7 +10,9 @@
 #include "core/executor.h"
 #include "mesh/cloth_model.h"
 #include "mesh/engine_types.h"
+#include "percale/interaction.h"
 #include "percale/scene.h"
+#include "percale/world.h"
 
 namespace percale {
 
@@ -22,14 +24,19 @@ struct EngineTable {
 
   // The stages of one step that ends at `time` [s].
   void (*moveColliders)(void*, double time);
-  bool (*applyForces)(void*, double time);  ///< False: a coordinate went out of bounds.
+  bool (*applyForces)(void*, double time, std::span<const Gust>);  ///< False: a coordinate went out of bounds.
+  void (*pull)(void*, const Handle&);                              ///< Part of applyForces.
   void (*findContacts)(void*);
   void (*selfCollide)(void*);
   void (*collide)(void*);
+  void (*collideBall)(void*, Ball&);  ///< Part of collide: cloth and ball push each other apart.
   void (*limitStrain)(void*);
 
   // What a frame leaves behind.
   void (*readState)(const void*, int cloth, std::span<Vec3> positions, std::span<Vec3> previous);
+  void (*readAnchors)(const void*, int cloth, std::vector<Vec3>& anchors);  ///< Of the pins, see WorldState.
+  /// The state of one cloth at `time` [s], which may be that of another World with the same cloths.
+  void (*writeState)(void*, int cloth, const WorldState::Cloth&, double time);
   Stretch (*greatestStretch)(const void*);
   double (*mass)(const void*, int cloth);  ///< Of one point [kg].
   VertexRef (*findOutOfBounds)(const void*);

@@ -208,7 +208,6 @@ std::vector<Parameter> MakeTable() {
     Cloth<&C::origin>({.name = "origin", .label = "Origin", .unit = "m", .min = -kFarthest, .max = kFarthest,
       .typicalMin = -2, .typicalMax = 2, .effect = kRebuild, .help = "Moves the whole sheet."}),
     Cloth<&C::pinned>({.name = "pinned", .label = "Pinned points",
-      .effect = kRebuild,
       .help = "Immovable points, each as [i, j]: column along the width, row along the height, from 0."}),
     Cloth<&C::enableStructural>({.name = "enable_structural", .label = "Structural", .required = true,
       .help = "Springs to the neighbours left and up."}),

@@ -12,6 +12,7 @@
 #include "percale/parameters.h"
 #include "world/divergence.h"
 #include "world/engine.h"
+#include "world/interaction.h"
 
 namespace percale {
 namespace {
@@ -56,42 +57,62 @@ bool SameCloths(const Scene& a, const Scene& b) {
 }  // namespace
 
 struct World::Impl {
-  Impl(Scene s, WorldOptions options) : executor(options.threads), scene(std::move(s)) { Build(); }
+  Impl(Scene s, WorldOptions options) : executor(options.threads), scene(std::make_shared<const Scene>(std::move(s))) {
+    Build();
+  }
 
+  struct Cloth;
   void Build();
   void Start();
+  void Configure(std::shared_ptr<const Scene> changed);
   void ReadState();
+  void ComputeVelocities(Cloth& cloth);
   void FinishStep();
 
   struct Cloth {
     ClothModel model;
-    std::vector<Edge> springs;  // of the enabled kinds
+    std::vector<Edge> springs;         // of the enabled kinds
+    std::vector<std::int32_t> pinned;  // ascending
     std::vector<Vec3> positions, previous, velocities;
     std::vector<Vec3> lastFrame;
   };
 
   Executor executor;
-  Scene scene;
+  std::shared_ptr<const Scene> scene;
   std::vector<Cloth> cloths;
   const EngineTable* engine = nullptr;
   std::shared_ptr<void> engineState;
   StepReport report;
   int restFrames = 0;
+  std::vector<Handle> handles;
+  std::vector<Ball> balls;
+  std::vector<Gust> gusts;
 };
 
 void World::Impl::Build() {
   std::vector<ClothModel> models;
-  for (const ClothSettings& settings : scene.cloths) models.push_back(MakeGrid(settings));
-  engine = &FindEngine(scene.simulation.engine);
-  engineState = engine->create(scene, models, executor);
+  for (const ClothSettings& settings : scene->cloths) models.push_back(MakeGrid(settings));
+  engine = &FindEngine(scene->simulation.engine);
+  engineState = engine->create(*scene, models, executor);
   cloths.clear();
   for (std::size_t c = 0; c < models.size(); ++c) {
     Cloth cloth;
-    cloth.springs = EnabledSprings(models[c], scene.cloths[c]);
+    cloth.springs = EnabledSprings(models[c], scene->cloths[c]);
+    cloth.pinned = PinnedVertices(scene->cloths[c]);
     cloth.model = std::move(models[c]);
     cloths.push_back(std::move(cloth));
   }
   Start();
+}
+
+/// Takes settings for the cloths that there are.
+void World::Impl::Configure(std::shared_ptr<const Scene> changed) {
+  scene = std::move(changed);
+  engine->configure(engineState.get(), *scene);
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    cloths[c].springs = EnabledSprings(cloths[c].model, scene->cloths[c]);
+    cloths[c].pinned = PinnedVertices(scene->cloths[c]);
+  }
 }
 
 /// What the reader sees before the first frame.
@@ -102,17 +123,24 @@ void World::Impl::Start() {
   }
   report = {};
   restFrames = 0;
+  handles.clear();
+  balls.clear();
+  gusts.clear();
 }
 
 void World::Impl::ReadState() {
-  const double dt = scene.TimeStep();
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     Cloth& cloth = cloths[c];
     cloth.lastFrame.swap(cloth.positions);
     engine->readState(engineState.get(), static_cast<int>(c), cloth.positions, cloth.previous);
-    for (std::size_t v = 0; v < cloth.positions.size(); ++v) {
-      cloth.velocities[v] = (cloth.positions[v] - cloth.previous[v]) / dt;
-    }
+    ComputeVelocities(cloth);
+  }
+}
+
+void World::Impl::ComputeVelocities(Cloth& cloth) {
+  const double dt = scene->TimeStep();
+  for (std::size_t v = 0; v < cloth.positions.size(); ++v) {
+    cloth.velocities[v] = (cloth.positions[v] - cloth.previous[v]) / dt;
   }
 }
 
@@ -153,15 +181,18 @@ const StepReport& World::Step() {
   StageClock clock(report);
   const EngineTable& engine = *w.engine;
   void* const state = w.engineState.get();
-  const double dt = w.scene.TimeStep();
+  const double dt = w.scene->TimeStep();
+  std::erase_if(w.gusts, [&](const Gust& gust) { return gust.start + gust.duration < report.time; });
   clock.Finished(Stage::CheckInput);
 
-  for (int step = 0; step < w.scene.simulation.stepsPerFrame; ++step) {
+  for (int step = 0; step < w.scene->simulation.stepsPerFrame; ++step) {
     ++report.step;
     report.time += dt;
     engine.moveColliders(state, report.time);
+    MoveBalls(*w.scene, dt, w.balls);
     clock.Finished(Stage::MoveColliders);
-    const bool inBounds = engine.applyForces(state, report.time);
+    const bool inBounds = engine.applyForces(state, report.time, w.gusts);
+    for (const Handle& handle : w.handles) engine.pull(state, handle);
     clock.Finished(Stage::ApplyForces);
     if (!inBounds) break;
     engine.findContacts(state);
@@ -169,6 +200,7 @@ const StepReport& World::Step() {
     engine.selfCollide(state);
     clock.Finished(Stage::SelfCollide);
     engine.collide(state);
+    for (Ball& ball : w.balls) engine.collideBall(state, ball);
     clock.Finished(Stage::Collide);
     engine.limitStrain(state);
     clock.Finished(Stage::LimitStrain);
@@ -179,7 +211,7 @@ const StepReport& World::Step() {
   if (lost.cloth < 0 && stretch.ratio > kDivergedStretch) lost = stretch.at;
   if (lost.cloth >= 0) {
     // The reader keeps the state of the last good frame.
-    report.divergence = ExplainDivergence(w.scene, report.step, lost.cloth, lost.vertex);
+    report.divergence = ExplainDivergence(*w.scene, report.step, lost.cloth, lost.vertex);
     engine.takeCounts(state);
   } else {
     ++report.frame;
@@ -199,22 +231,104 @@ void World::Reset() {
 
 bool World::Apply(Scene scene) {
   Impl& w = *impl_;
-  const bool keep = SameCloths(w.scene, scene);
-  w.scene = std::move(scene);
+  const bool keep = SameCloths(*w.scene, scene);
+  auto changed = std::make_shared<const Scene>(std::move(scene));
   if (!keep) {
+    w.scene = std::move(changed);
     w.Build();
     return false;
   }
-  w.engine->configure(w.engineState.get(), w.scene);
-  for (std::size_t c = 0; c < w.cloths.size(); ++c) {
-    w.cloths[c].springs = EnabledSprings(w.cloths[c].model, w.scene.cloths[c]);
-  }
+  w.Configure(std::move(changed));
   w.restFrames = 0;
   w.report.atRest = false;
   return true;
 }
 
+void World::SetHandles(std::vector<Handle> handles) {
+  for (const Handle& handle : handles) {
+    assert(handle.cloth >= 0 && handle.cloth < ClothCount() && handle.vertex >= 0);
+    assert(handle.vertex < impl_->cloths[static_cast<std::size_t>(handle.cloth)].model.PointCount());
+    assert(!Check(handle));
+  }
+  impl_->handles = std::move(handles);
+}
+
+void World::AddBall(const Ball& ball) {
+  assert(!Check(ball));
+  std::vector<Ball>& balls = impl_->balls;
+  if (balls.size() == kMostBalls) balls.erase(balls.begin());
+  balls.push_back(ball);
+}
+
+void World::AddGust(const Gust& gust) {
+  assert(!Check(gust));
+  impl_->gusts.push_back(gust);
+}
+
+std::span<const Handle> World::handles() const {
+  return impl_->handles;
+}
+std::span<const Ball> World::balls() const {
+  return impl_->balls;
+}
+
+void World::Save(WorldState& state) const {
+  const Impl& w = *impl_;
+  state.scene = w.scene;
+  state.report = w.report;
+  state.restFrames = w.restFrames;
+  state.cloths.resize(w.cloths.size());
+  for (std::size_t c = 0; c < w.cloths.size(); ++c) {
+    state.cloths[c].positions = w.cloths[c].positions;
+    state.cloths[c].previous = w.cloths[c].previous;
+    w.engine->readAnchors(w.engineState.get(), static_cast<int>(c), state.cloths[c].anchors);
+  }
+  state.handles = w.handles;
+  state.balls = w.balls;
+  state.gusts = w.gusts;
+}
+
+void World::Restore(const WorldState& state) {
+  Impl& w = *impl_;
+  if (w.scene != state.scene) {
+    if (SameCloths(*w.scene, *state.scene)) {
+      w.Configure(state.scene);
+    } else {
+      w.scene = state.scene;
+      w.Build();
+    }
+  }
+  assert(state.cloths.size() == w.cloths.size());
+  for (std::size_t c = 0; c < w.cloths.size(); ++c) {
+    Impl::Cloth& cloth = w.cloths[c];
+    assert(state.cloths[c].positions.size() == cloth.positions.size());
+    cloth.positions = state.cloths[c].positions;
+    cloth.previous = state.cloths[c].previous;
+    w.engine->writeState(w.engineState.get(), static_cast<int>(c), state.cloths[c], state.report.time);
+    w.ComputeVelocities(cloth);
+  }
+  w.engine->takeCounts(w.engineState.get());
+  w.report = state.report;
+  w.restFrames = state.restFrames;
+  w.handles = state.handles;
+  w.balls = state.balls;
+  w.gusts = state.gusts;
+}
+
+std::size_t WorldState::Bytes() const {
+  std::size_t bytes = sizeof *this;
+  for (const Cloth& cloth : cloths) {
+    bytes += sizeof cloth;
+    bytes += (cloth.positions.capacity() + cloth.previous.capacity() + cloth.anchors.capacity()) * sizeof(Vec3);
+  }
+  return bytes + handles.capacity() * sizeof(Handle) + balls.capacity() * sizeof(Ball) +
+         gusts.capacity() * sizeof(Gust);
+}
+
 const Scene& World::scene() const {
+  return *impl_->scene;
+}
+std::shared_ptr<const Scene> World::sharedScene() const {
   return impl_->scene;
 }
 const StepReport& World::report() const {
@@ -233,22 +347,27 @@ ClothView World::Cloth(int index) const {
   view.uv_ = cloth.model.uv;
   view.triangles_ = cloth.model.triangles;
   view.springs_ = cloth.springs;
-  view.pinned_ = cloth.model.pinned;
+  view.pinned_ = cloth.pinned;
   return view;
 }
 
 std::uint64_t World::StateHash() const {
   // FNV-1a over 64-bit words.
   std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const Impl::Cloth& cloth : impl_->cloths) {
-    for (const Vec3& p : cloth.positions) {
-      for (const double coordinate : {p.x, p.y, p.z}) {
-        std::uint64_t bits;
-        std::memcpy(&bits, &coordinate, sizeof bits);
-        hash = (hash ^ bits) * 0x100000001b3u;
-        hash ^= hash >> 32;
-      }
+  const auto add = [&](const Vec3& v) {
+    for (const double coordinate : {v.x, v.y, v.z}) {
+      std::uint64_t bits;
+      std::memcpy(&bits, &coordinate, sizeof bits);
+      hash = (hash ^ bits) * 0x100000001b3u;
+      hash ^= hash >> 32;
     }
+  };
+  for (const Impl::Cloth& cloth : impl_->cloths) {
+    for (const Vec3& position : cloth.positions) add(position);
+  }
+  for (const Ball& ball : impl_->balls) {
+    add(ball.position);
+    add(ball.velocity);
   }
   return hash;
 }

@@ -97,7 +97,7 @@ TEST_CASE("the triangles cover the sheet once, all seen from the same side") {
 TEST_CASE("pins are indices, ascending, each once") {
   ClothSettings cloth = Sheet(4, 3);
   cloth.pinned = {{3, 2}, {0, 0}, {1, 1}, {0, 0}};
-  CHECK(MakeGrid(cloth).pinned == std::vector<std::int32_t>{0, 5, 11});
+  CHECK(PinnedVertices(cloth) == std::vector<std::int32_t>{0, 5, 11});
 }
 
 TEST_CASE("springs are created point by point: left, up, upper left, upper right, two left, two up") {
