@@ -181,10 +181,11 @@ class Builder {
          });
   }
 
-  void Log(CLI::App& app) {
+  void Viewer(CLI::App& app) {
     app.add_option("--log", options_.log, "Writes what happens in the viewer to a file, one line of JSON per event")
         ->type_name("FILE")
         ->group("Viewer");
+    app.add_flag("--keys", options_.keys, "Prints the viewer's keys as a table, and ends")->group("Viewer");
   }
 
   template <class Function>
@@ -270,7 +271,7 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   builder.Scene(view, false);
   builder.Sphere(view, nullptr);
   builder.Picture(view);
-  builder.Log(view);
+  builder.Viewer(view);
 
   CLI::App& simulate =
       verb(Verb::Simulate, "Runs a scene without drawing, prints a summary, writes caches",
@@ -440,7 +441,7 @@ std::variant<Options, int> ParseCommandLine(const std::vector<std::string>& argu
   builder.Scene(app, false);
   builder.Sphere(app, nullptr);
   builder.Picture(app);
-  builder.Log(app);
+  builder.Viewer(app);
   AddVerbs(app, builder);
 
   std::string verb;

@@ -61,7 +61,8 @@ struct Options {
   std::optional<double> azimuth, elevation, distance;  ///< --camera [degree, degree, m]
   std::optional<std::vector<double>> target;           ///< --target, three numbers [m]
 
-  std::string log;  ///< view --log
+  std::string log;    ///< view --log
+  bool keys = false;  ///< view --keys
 
   bool schema = false;     ///< check --schema
   std::string benchmark;   ///< bench NAME; empty: springs.

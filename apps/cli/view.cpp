@@ -20,6 +20,12 @@ constexpr const char* kDemonstrationShader = "Phong";
 }  // namespace
 
 int View(const Options& options) {
+#ifdef PERCALE_HAS_VIEWER
+  if (options.keys) {
+    std::fputs(KeyTable().c_str(), stdout);
+    return kDone;
+  }
+#endif
   if (options.bare && !HasDisplay() && !options.printConfig) return ShowWithoutDisplay(options);
   auto opened = OpenSession(options);
   if (const int* code = std::get_if<int>(&opened)) return *code;

@@ -1,47 +1,76 @@
 #include "apps/viewer/actions.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "apps/viewer/session.h"
 #include "apps/viewer/ui_state.h"
+#include "apps/viewer/viewer.h"
 
 namespace percale::viewer {
 namespace {
 
 using enum SpecialKey;
 
+constexpr Key Typed(char character) {
+  return {.character = character};
+}
+constexpr Key Press(SpecialKey special) {
+  return {.special = special};
+}
+
 // clang-format off
 constexpr Action kActions[] = {
-    {"pause", "P", "Run or pause the simulation", 'p', None, false,
-     [](Session& session, UiState&) { session.TogglePause(); return true; }},
-    {"step", "N", "One frame, while paused", 'n', None, true,
-     [](Session& session, UiState&) { return session.StepOneFrame(); }},
-    {"reset", "R", "Cloth back to its start", 'r', None, false,
-     [](Session& session, UiState&) { session.ResetCloth(); return true; }},
-    {"reset_camera", "Space", "Camera back to its start", ' ', None, false,
-     [](Session& session, UiState&) { session.ResetCamera(); return true; }},
-    {"previous_shader", "[", "Previous shader", '[', None, true,
-     [](Session& session, UiState&) { session.CycleShader(-1); return true; }},
-    {"next_shader", "]", "Next shader", ']', None, true,
-     [](Session& session, UiState&) { session.CycleShader(1); return true; }},
-    {"previous_scene", "{", "Previous scene file of the folder", '{', None, false,
-     [](Session& session, UiState&) { session.CycleScene(-1); return true; }},
-    {"next_scene", "}", "Next scene file of the folder", '}', None, false,
-     [](Session& session, UiState&) { session.CycleScene(1); return true; }},
-    {"reload", "F5", "Read scene, shaders, textures again", 0, F5, false,
-     [](Session& session, UiState&) { session.Reload(); return true; }},
-    {"panels", "Tab", "Hide or show the panels", 0, Tab, false,
-     [](Session& session, UiState& state) {
+    {.name = "pause", .category = "Simulation", .title = "Run or pause", .help = "Run or pause the simulation",
+     .key = Typed('p'),
+     .run = [](Session& session, UiState&) { session.TogglePause(); return true; }},
+    {.name = "step", .category = "Simulation", .title = "One frame", .help = "One frame, while paused",
+     .key = Typed('n'), .repeats = true,
+     .enabled = [](const Session& session, const UiState&) { return !session.running(); },
+     .run = [](Session& session, UiState&) { return session.StepOneFrame(); }},
+    {.name = "reset", .category = "Simulation", .title = "Reset the cloth", .help = "Cloth back to its start",
+     .key = Typed('r'),
+     .run = [](Session& session, UiState&) { session.ResetCloth(); return true; }},
+
+    {.name = "reset_camera", .category = "View", .title = "Reset the camera", .help = "Camera back to its start",
+     .key = Typed(' '),
+     .run = [](Session& session, UiState&) { session.ResetCamera(); return true; }},
+    {.name = "previous_shader", .category = "View", .title = "Previous shader", .help = "Previous shader",
+     .key = Typed('['), .repeats = true,
+     .run = [](Session& session, UiState&) { session.CycleShader(-1); return true; }},
+    {.name = "next_shader", .category = "View", .title = "Next shader", .help = "Next shader",
+     .key = Typed(']'), .repeats = true,
+     .run = [](Session& session, UiState&) { session.CycleShader(1); return true; }},
+
+    {.name = "previous_scene", .category = "Scene", .title = "Previous scene",
+     .help = "Previous scene file of the folder",
+     .key = Typed('{'),
+     .run = [](Session& session, UiState&) { session.CycleScene(-1); return true; }},
+    {.name = "next_scene", .category = "Scene", .title = "Next scene", .help = "Next scene file of the folder",
+     .key = Typed('}'),
+     .run = [](Session& session, UiState&) { session.CycleScene(1); return true; }},
+    {.name = "reload", .category = "Scene", .title = "Reload all files",
+     .help = "Read scene, shaders, textures again",
+     .key = Press(F5),
+     .run = [](Session& session, UiState&) { session.Reload(); return true; }},
+
+    {.name = "panels", .category = "Window", .title = "Hide or show the panels", .help = "Hide or show the panels",
+     .key = Press(Tab),
+     .run = [](Session& session, UiState& state) {
        state.panelsVisible = !state.panelsVisible;
        session.log().Write(LogLine("panels").Flag("visible", state.panelsVisible));
        return true;
      }},
-    {"help", "F1", "This help", 0, F1, false,
-     [](Session& session, UiState& state) {
+    {.name = "help", .category = "Window", .title = "Help", .help = "Help: keys and mouse",
+     .key = Press(F1),
+     .run = [](Session& session, UiState& state) {
        state.helpVisible = !state.helpVisible;
        session.log().Write(LogLine("help").Flag("visible", state.helpVisible));
        return true;
      }},
-    {"quit", "Esc", "Quit", 0, Escape, false,
-     [](Session&, UiState& state) { state.quit = true; return true; }},
+    {.name = "quit", .category = "Window", .title = "Quit", .help = "Quit",
+     .key = Press(Escape),
+     .run = [](Session&, UiState& state) { state.quit = true; return true; }},
 };
 // clang-format on
 
@@ -52,7 +81,35 @@ constexpr MouseHelp kMouse[] = {
     {"Drop a scene file", "Open it"},
 };
 
+std::string_view SpecialName(SpecialKey special) {
+  constexpr std::string_view kNames[] = {"",      "Esc", "Tab",  "Enter", "Delete", "Home", "End", "Left",
+                                         "Right", "Up",  "Down", "F1",    "F2",     "F3",   "F4",  "F5",
+                                         "F6",    "F7",  "F8",   "F9",    "F10",    "F11",  "F12"};
+  static_assert(std::size(kNames) == static_cast<std::size_t>(F12) + 1);
+  return kNames[static_cast<std::size_t>(special)];
+}
+
+char Upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+char Lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
 }  // namespace
+
+std::string KeyText(const Key& key) {
+  std::string text;
+  if (key.control) text += "Ctrl+";
+  if (key.shift) text += "Shift+";
+  if (key.special != None)
+    text += SpecialName(key.special);
+  else if (key.character == ' ')
+    text += "Space";
+  else if (key.character != 0)
+    text += Upper(key.character);
+  return text;
+}
 
 std::span<const Action> Actions() {
   return kActions;
@@ -61,17 +118,54 @@ std::span<const MouseHelp> MouseGestures() {
   return kMouse;
 }
 
-void RunAction(char character, SpecialKey special, bool repeated, Session& session, UiState& state) {
-  if (character >= 'A' && character <= 'Z') character = static_cast<char>(character - 'A' + 'a');
+const Action& FindAction(std::string_view name) {
+  return *std::find_if(std::begin(kActions), std::end(kActions), [&](const Action& a) { return a.name == name; });
+}
+
+std::string KeysText(const Action& action) {
+  return KeyText(action.key) + (action.otherKey ? ", " + KeyText(action.otherKey) : "");
+}
+
+void RunAction(const Action& action, Session& session, UiState& state) {
+  // The line comes before what the action causes, so a refusal has one of its own.
+  session.log().Write(LogLine("action").Text("name", action.name).Text("key", KeyText(action.key)));
+  const bool can = !action.enabled || action.enabled(session, state);
+  if (!can || !action.run(session, state)) session.log().Write(LogLine("ignored").Text("name", action.name));
+}
+
+void RunAction(const Key& key, bool repeated, Session& session, UiState& state) {
+  if (!key) return;
+  Key meant = key;
+  meant.character = Lower(key.character);
   for (const Action& action : kActions) {
-    const bool meant = special == None ? character != 0 && action.character == character : action.special == special;
-    if (!meant) continue;
-    if (repeated && !action.repeats) return;
-    // The line comes before what the action causes, so a refusal has one of its own.
-    session.log().Write(LogLine("action").Text("name", action.name).Text("key", action.key));
-    if (!action.run(session, state)) session.log().Write(LogLine("ignored").Text("name", action.name));
+    if (action.key != meant && action.otherKey != meant) continue;
+    if (!repeated || action.repeats) RunAction(action, session, state);
     return;
   }
 }
 
+bool BelongsToTextInput(const Key& key) {
+  if (key.special == Tab) return !key.control;
+  if (key.special != None) return key.special < F1;
+  // Mark all, copy, paste, cut, redo, undo.
+  return !key.control || std::string_view("acvxyz").find(Lower(key.character)) != std::string_view::npos;
+}
+
 }  // namespace percale::viewer
+
+namespace percale {
+
+std::string KeyTable() {
+  const auto row = [](std::string_view key, std::string_view help, std::string_view category) {
+    return "| " + std::string(key) + " | " + std::string(help) + " | " + std::string(category) + " |\n";
+  };
+  std::string table = row("key", "does", "") + "|---|---|---|\n";
+  for (const viewer::Action& action : viewer::Actions()) {
+    const std::string keys = viewer::KeysText(action);
+    table += row(keys.empty() ? "Ctrl+K, then its name" : keys, action.help, action.category);
+  }
+  for (const viewer::MouseHelp& mouse : viewer::MouseGestures()) table += row(mouse.gesture, mouse.help, "Mouse");
+  return table;
+}
+
+}  // namespace percale

@@ -32,7 +32,7 @@ void DrawHelp(const Session& session, UiState& state, float pictureWidth, float 
   ImGui::PopStyleVar();
   if (shown) {
     if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_PadOuterX)) {
-      for (const Action& action : Actions()) Row(action.key, action.help);
+      for (const Action& action : Actions()) Row(KeysText(action), action.help);
       for (const MouseHelp& mouse : MouseGestures()) Row(mouse.gesture, mouse.help);
       ImGui::EndTable();
     }

@@ -137,14 +137,19 @@ class Viewer {
 
  private:
   void HandleKeys(const std::vector<InputEvent>& events) {
-    const bool typing = ImGui::GetIO().WantTextInput;
     for (const InputEvent& event : events) {
       if (event.kind == InputEvent::Kind::Drop) session_.OpenScene(event.file);
-      const bool isKey = event.kind == InputEvent::Kind::Character || event.kind == InputEvent::Kind::Special;
-      if (!isKey || typing) continue;
-      if (event.special == SpecialKey::Escape && Window::CloseLists()) continue;
-      RunAction(event.character, event.special, event.repeated, session_, state_);
+      if (event.kind == InputEvent::Kind::Key) HandleKey(event);
     }
+  }
+
+  void HandleKey(const InputEvent& event) {
+    const bool typing = ImGui::GetIO().WantTextInput;
+    if ((typing || Window::HasLists()) && BelongsToTextInput(event.key)) {
+      if (!typing && event.key.special == SpecialKey::Escape) Window::CloseLists();
+      return;
+    }
+    RunAction(event.key, event.repeated, session_, state_);
   }
 
   /// The part of the window that shows the picture: all but the panels [screen unit].

@@ -28,4 +28,7 @@ struct ViewerOptions {
 /// do, 5 no display or no OpenGL 3.3 (with what to do about it), 130 interrupted from the terminal.
 int RunViewer(const ViewerOptions& options);
 
+/// The keys and what they do, as a table in Markdown.
+std::string KeyTable();
+
 }  // namespace percale

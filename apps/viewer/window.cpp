@@ -32,18 +32,25 @@ Diagnostic NoGraphics(const std::string& what, const std::string& remedy) {
 }
 
 SpecialKey SpecialKeyOf(int key) {
-  switch (key) {
-    case GLFW_KEY_ESCAPE:
-      return SpecialKey::Escape;
-    case GLFW_KEY_TAB:
-      return SpecialKey::Tab;
-    case GLFW_KEY_F1:
-      return SpecialKey::F1;
-    case GLFW_KEY_F5:
-      return SpecialKey::F5;
-    default:
-      return SpecialKey::None;
+  using enum SpecialKey;
+  constexpr std::pair<int, SpecialKey> kKeys[] = {
+      {GLFW_KEY_ESCAPE, Escape}, {GLFW_KEY_TAB, Tab},   {GLFW_KEY_ENTER, Enter}, {GLFW_KEY_KP_ENTER, Enter},
+      {GLFW_KEY_DELETE, Delete}, {GLFW_KEY_HOME, Home}, {GLFW_KEY_END, End},     {GLFW_KEY_LEFT, Left},
+      {GLFW_KEY_RIGHT, Right},   {GLFW_KEY_UP, Up},     {GLFW_KEY_DOWN, Down}};
+  if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12)
+    return static_cast<SpecialKey>(static_cast<int>(F1) + key - GLFW_KEY_F1);
+  for (const auto& entry : kKeys) {
+    if (entry.first == key) return entry.second;
   }
+  return None;
+}
+
+/// The character of a key that is pressed with Ctrl, which types none: the one that it types by
+/// itself, or on a keyboard of another script the one that the key has on an American one.
+char CharacterWithControl(int key, int scancode) {
+  const char* const name = glfwGetKeyName(key, scancode);
+  if (name && name[0] > ' ' && name[0] < 0x7f && name[1] == 0) return name[0];
+  return key > GLFW_KEY_SPACE && key < 0x7f ? static_cast<char>(key) : '\0';
 }
 
 }  // namespace
@@ -57,21 +64,26 @@ struct Window::Callbacks {
   }
   static void Add(GLFWwindow* window, InputEvent event) { Of(window).events.push_back(std::move(event)); }
 
-  static void Key(GLFWwindow* window, int key, int, int action, int) {
+  static void Key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
     Of(window).lastRepeated = action == GLFW_REPEAT;
-    const SpecialKey special = SpecialKeyOf(key);
-    if (action == GLFW_RELEASE || special == SpecialKey::None) return;
+    if (action == GLFW_RELEASE || (modifiers & GLFW_MOD_ALT) != 0) return;
     InputEvent event;
-    event.kind = InputEvent::Kind::Special;
-    event.special = special;
+    event.kind = InputEvent::Kind::Key;
+    event.key.special = SpecialKeyOf(key);
+    event.key.control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    event.key.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+    // Without Ctrl, what the key types comes by Character.
+    if (event.key.control && event.key.special == SpecialKey::None)
+      event.key.character = CharacterWithControl(key, scancode);
+    if (!event.key) return;
     event.repeated = action == GLFW_REPEAT;
     Add(window, event);
   }
   static void Character(GLFWwindow* window, unsigned codepoint) {
     if (codepoint > 0x7e) return;  // No action has such a key.
     InputEvent event;
-    event.kind = InputEvent::Kind::Character;
-    event.character = static_cast<char>(codepoint);
+    event.kind = InputEvent::Kind::Key;
+    event.key.character = static_cast<char>(codepoint);
     event.repeated = Of(window).lastRepeated;
     Add(window, event);
   }
@@ -277,10 +289,12 @@ bool Window::OverPanels(double x, double y) {
   return false;
 }
 
-bool Window::CloseLists() {
-  if (GImGui->OpenPopupStack.Size == 0) return false;
-  ImGui::ClosePopupToLevel(0, true);
-  return true;
+bool Window::HasLists() {
+  return GImGui->OpenPopupStack.Size > 0;
+}
+
+void Window::CloseLists() {
+  if (HasLists()) ImGui::ClosePopupToLevel(0, true);
 }
 
 void Window::Present() {

@@ -23,16 +23,14 @@ struct WindowSettings {
 
 struct InputEvent {
   enum class Kind {
-    Character,  ///< A key that types `character`.
-    Special,    ///< A key that types none.
-    Press,      ///< Of a mouse button, at (x, y).
+    Key,    ///< `key` was pressed.
+    Press,  ///< Of a mouse button, at (x, y).
     Release,
     Move,   ///< The pointer is at (x, y) now.
     Wheel,  ///< By `steps`, at (x, y).
     Drop,   ///< Of `file` onto the window.
   } kind = Kind::Move;
-  char character = 0;
-  SpecialKey special = SpecialKey::None;
+  viewer::Key key;
   bool repeated = false;  ///< The key is held.
   enum class Button { Left, Right } button = Button::Left;
   bool control = false;  ///< Ctrl was held at the press.
@@ -66,8 +64,10 @@ class Window {
   /// Whether a point of the window [screen unit] is over a panel, or a list that hangs open will take
   /// the press; as of the panels of the last picture.
   static bool OverPanels(double x, double y);
-  /// Closes lists that hang open. Returns whether there was one.
-  static bool CloseLists();
+  /// Whether a list hangs open.
+  static bool HasLists();
+  /// Closes lists that hang open.
+  static void CloseLists();
   void Present();  ///< Shows the picture.
 
   bool ShouldClose() const;

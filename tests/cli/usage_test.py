@@ -284,6 +284,14 @@ class Doctor(ProgramTest):
         self.assertRegex(done.stdout, r"note +ffmpeg +not found")
 
 
+class Keys(ProgramTest):
+    def test_the_documentation_has_the_table_of_the_program(self):
+        printed = self.run_program("view", "--keys").stdout
+        self.assertIn("| P | Run or pause the simulation | Simulation |\n", printed)
+        documented = (ROOT / "docs" / "viewer.md").read_text(encoding="utf-8")
+        self.assertIn("\n\n" + printed + "\n", documented, "remedy: paste what `percale view --keys` prints")
+
+
 class WithoutDisplay(ProgramTest):
     def test_view_says_so(self):
         done = self.run_program("view", self.scene(), code=5)
