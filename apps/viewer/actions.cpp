@@ -41,6 +41,9 @@ constexpr Action kActions[] = {
     {.name = "next_shader", .category = "View", .title = "Next shader", .help = "Next shader",
      .key = Typed(']'), .repeats = true,
      .run = [](Session& session, UiState&) { session.CycleShader(1); return true; }},
+    {.name = "wireframe", .category = "View", .title = "Wireframe", .help = "Springs over any shader",
+     .key = Typed('w'),
+     .run = [](Session& session, UiState&) { session.ToggleWireframe(); return true; }},
 
     {.name = "previous_scene", .category = "Scene", .title = "Previous scene",
      .help = "Previous scene file of the folder",

@@ -217,6 +217,11 @@ void Session::CycleShader(int by) {
   SetShader(names[static_cast<std::size_t>(((at + by) % count + count) % count)]);
 }
 
+void Session::ToggleWireframe() {
+  view_.wireframe = !view_.wireframe;
+  if (log_.enabled()) log_.Write(LogLine("wireframe").Flag("visible", view_.wireframe));
+}
+
 std::span<const ShaderParameter> Session::ShaderParameters() {
   return shaders_.Parameters(view_.look.shader);
 }

@@ -62,6 +62,8 @@ class Session {
   void ResetCamera();
   void SetShader(const std::string& name);
   void CycleShader(int by);
+  /// Draws the springs over any shader, or no longer.
+  void ToggleWireframe();
   std::span<const ShaderParameter> ShaderParameters();  ///< Of the current shader.
   UniformValue Uniform(const ShaderParameter& parameter) const;
   void SetUniform(const ShaderParameter& parameter, const UniformValue& value);

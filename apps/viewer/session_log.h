@@ -13,6 +13,7 @@
 ///   set      path ("/cloth/0/ks"), value, command (absent where the simulation has no part in it)
 ///   uniform  shader, name, value (three numbers)
 ///   shader   name: the shader that is drawn with from now on
+///   wireframe visible: the springs are drawn over the shader, or no longer
 ///   camera   azimuth, elevation [degree], distance [m], target [m]
 ///   done     command, frame, hash, kept: a command was carried out after that frame; kept: the
 ///            cloths are where they were. A change of settings that was overtaken by a newer one has

@@ -169,6 +169,15 @@ class View(ViewerTest):
             since = viewer.key("F1", "help")
             viewer.wait("help", since, visible=False)
 
+    def test_w_draws_the_springs_over_any_shader(self):
+        with self.viewer(scene("sphere"), "--shader", "Phong") as viewer:
+            since = viewer.key("w", "wireframe")
+            viewer.wait("wireframe", since, visible=True)
+            viewer.step()
+            since = viewer.key("w", "wireframe")
+            viewer.wait("wireframe", since, visible=False)
+            self.assertEqual(viewer.count("message"), 0, viewer.stderr())
+
     def test_resizing(self):
         with self.viewer(scene("pinned2")) as viewer:
             for size in ((800, 600), (400, 300), (1200, 900)):
