@@ -35,10 +35,12 @@ struct DrawItem {
   enum class Primitive { Triangles, Lines };
   std::shared_ptr<const DrawMesh> mesh;
   Primitive primitive = Primitive::Triangles;
-  std::string shader;       ///< Name in the ShaderLibrary.
-  Color color{1, 1, 1, 1};  ///< u_color.
-  Mat4 model;               ///< u_model: world space from the mesh's.
-  bool pushBack = false;    ///< Lines of the same surface follow: leave them in front.
+  std::string shader;                ///< Name in the ShaderLibrary.
+  Color color{1, 1, 1, 1};           ///< u_color.
+  Mat4 model;                        ///< u_model: world space from the mesh's.
+  bool pushBack = false;             ///< Lines of the same surface follow: leave them in front.
+  Surface surface = Surface::Cloth;  ///< Chooses the part of the shader.
+  bool castsShadow = false;          ///< Stands in the shadow map of shaders that want one.
 };
 
 struct DrawList {
@@ -47,6 +49,8 @@ struct DrawList {
   Vec3 cameraPosition;                            ///< u_cam_pos
   Vec3 lightPosition{0.5, 2, 2};                  ///< u_light_pos
   Vec3 lightIntensity{3, 3, 3};                   ///< u_light_intensity
+  Mat4 lightViewProjection;                       ///< u_light_view_projection: what casts shadows, seen from the light.
+  int shadowMapSize = 1024;                       ///< Of u_shadow_map [pixel]; 0: no shadows.
   float normalScaling = 2;                        ///< u_normal_scaling
   float heightScaling = 0.1f;                     ///< u_height_scaling
   UniformValues uniforms;                         ///< Parameters that differ from the shader's defaults.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/atomic_file.h"
+#include "render/gl_shadow_map.h"
 #include "render/gl_textures.h"
 
 namespace percale {
@@ -16,15 +17,17 @@ namespace {
 
 constexpr int kFirstTextureUnit = 1;  // u_texture_1..4 on units 1..4, as in the course.
 constexpr int kCubeMapUnit = 5;
+constexpr int kShadowMapUnit = 6;
+constexpr float kShadowSlopeOffset = 1.5f, kShadowOffset = 2;  // As glPolygonOffset takes them.
 
-// Stands in for a shader that does not compile.
-constexpr const char* kFallbackVertex = R"(#version 330
+// Draws the shadow map, and stands in for a shader that does not compile.
+constexpr const char* kPlainVertex = R"(#version 330
 uniform mat4 u_model;
 uniform mat4 u_view_projection;
 in vec4 in_position;
 void main() { gl_Position = u_view_projection * (u_model * in_position); }
 )";
-constexpr const char* kFallbackFragment = R"(#version 330
+constexpr const char* kPlainFragment = R"(#version 330
 out vec4 out_color;
 void main() { out_color = vec4(1.0, 0.0, 1.0, 1.0); }
 )";
@@ -124,10 +127,10 @@ class MeshStore {
   std::map<const DrawMesh*, GpuMesh> meshes_;
 };
 
-GLuint MakeFallback() {
+GLuint MakePlain() {
   const GLuint program = glCreateProgram();
   for (const auto& [stage, text] :
-       {std::pair{GL_VERTEX_SHADER, kFallbackVertex}, std::pair{GL_FRAGMENT_SHADER, kFallbackFragment}}) {
+       {std::pair{GL_VERTEX_SHADER, kPlainVertex}, std::pair{GL_FRAGMENT_SHADER, kPlainFragment}}) {
     const GLuint shader = glCreateShader(static_cast<GLenum>(stage));
     glShaderSource(shader, 1, &text, nullptr);
     glCompileShader(shader);
@@ -162,17 +165,19 @@ GraphicsInfo DescribeGraphics() {
 struct GlDevice::Impl {
   explicit Impl(const std::filesystem::path& root) : shaders(root / "shaders"), textures(root / "textures") {}
   ~Impl() {
-    if (fallback) glDeleteProgram(fallback);
+    if (plain) glDeleteProgram(plain);
   }
 
+  void DrawShadowMap(const DrawList& list);
+  void UsePlain(const Mat4& viewProjection);
   void SetUniforms(const ShaderProgram& shader, const DrawList& list);
-  void Draw(const DrawItem& item, const DrawList& list, const ShaderProgram* shader);
+  void Draw(const DrawItem& item, const ShaderProgram* shader);
 
   ShaderLibrary shaders;
   GlTextures textures;
   MeshStore meshes;
-  GLuint fallback = 0;
-  Diagnostics warnings;
+  GlShadowMap shadowMap;
+  GLuint plain = 0;
 };
 
 GlDevice::GlDevice(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -208,9 +213,36 @@ std::vector<std::filesystem::path> GlDevice::ReloadTextures(const std::vector<st
 
 Diagnostics GlDevice::TakeWarnings() {
   Diagnostics warnings = impl_->textures.TakeWarnings();
-  warnings.insert(warnings.end(), impl_->warnings.begin(), impl_->warnings.end());
-  impl_->warnings.clear();
+  const Diagnostics more = impl_->shadowMap.TakeWarnings();
+  warnings.insert(warnings.end(), more.begin(), more.end());
   return warnings;
+}
+
+void GlDevice::Impl::UsePlain(const Mat4& viewProjection) {
+  if (!plain) plain = MakePlain();
+  glUseProgram(plain);
+  glUniformMatrix4fv(glGetUniformLocation(plain, "u_view_projection"), 1, GL_FALSE, ToFloats(viewProjection).data());
+}
+
+// What the light reaches, where a shader asks for it. A vertex shader that moves its surface casts
+// the shadow of the surface as it was.
+void GlDevice::Impl::DrawShadowMap(const DrawList& list) {
+  const bool isWanted = std::any_of(list.items.begin(), list.items.end(), [&](const DrawItem& item) {
+    const ShaderProgram* shader = shaders.Find(item.shader, item.surface);
+    return shader && shader->Location("u_shadow_map") >= 0;
+  });
+  if (!isWanted) return;
+  shadowMap.Clear();
+  if (list.shadowMapSize < 1 || !shadowMap.Begin(list.shadowMapSize)) return;
+  UsePlain(list.lightViewProjection);
+  // Away from the light, by more where the surface is steep: else it would lie in its own shadow.
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(kShadowSlopeOffset, kShadowOffset);
+  for (const DrawItem& item : list.items) {
+    if (item.castsShadow) Draw(item, nullptr);
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  shadowMap.End();
 }
 
 // Everything that is the same for all items of a shader. `shader` is the program in use.
@@ -221,6 +253,9 @@ void GlDevice::Impl::SetUniforms(const ShaderProgram& shader, const DrawList& li
   };
   if (at("u_view_projection") >= 0) {
     glUniformMatrix4fv(at("u_view_projection"), 1, GL_FALSE, ToFloats(list.viewProjection).data());
+  }
+  if (at("u_light_view_projection") >= 0) {
+    glUniformMatrix4fv(at("u_light_view_projection"), 1, GL_FALSE, ToFloats(list.lightViewProjection).data());
   }
   setVec3("u_cam_pos", list.cameraPosition);
   setVec3("u_light_pos", list.lightPosition);
@@ -246,6 +281,12 @@ void GlDevice::Impl::SetUniforms(const ShaderProgram& shader, const DrawList& li
     glBindTexture(GL_TEXTURE_CUBE_MAP, cubeMap);
     glUniform1i(sampler, kCubeMapUnit);
   }
+  if (const int sampler = at("u_shadow_map"); sampler >= 0) {
+    const unsigned texture = shadowMap.Texture();
+    glActiveTexture(GL_TEXTURE0 + kShadowMapUnit);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glUniform1i(sampler, kShadowMapUnit);
+  }
 
   for (const ShaderParameter& parameter : shader.parameters) {
     const int location = at(parameter.name);
@@ -269,7 +310,8 @@ void GlDevice::Impl::SetUniforms(const ShaderProgram& shader, const DrawList& li
   }
 }
 
-void GlDevice::Impl::Draw(const DrawItem& item, const DrawList& list, const ShaderProgram* shader) {
+// With the program in use: that of `shader`, or the plain one.
+void GlDevice::Impl::Draw(const DrawItem& item, const ShaderProgram* shader) {
   const bool isLines = item.primitive == DrawItem::Primitive::Lines;
   const auto count = static_cast<GLsizei>(isLines ? item.mesh->lines.size() : item.mesh->triangles.size());
   if (count == 0) return;
@@ -280,22 +322,27 @@ void GlDevice::Impl::Draw(const DrawItem& item, const DrawList& list, const Shad
     if (shader->Location("u_color") >= 0) glUniform4fv(shader->Location("u_color"), 1, item.color.data());
     if (shader->Location("u_lines") >= 0) glUniform1i(shader->Location("u_lines"), isLines);
   } else {
-    glUniformMatrix4fv(glGetUniformLocation(fallback, "u_model"), 1, GL_FALSE, model.data());
-    glUniformMatrix4fv(glGetUniformLocation(fallback, "u_view_projection"), 1, GL_FALSE,
-                       ToFloats(list.viewProjection).data());
+    glUniformMatrix4fv(glGetUniformLocation(plain, "u_model"), 1, GL_FALSE, model.data());
   }
   if (item.pushBack) {
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1, 1);
   }
+  if (item.surface == Surface::Background) {  // Behind everything.
+    glDepthRange(1, 1);
+    glDepthFunc(GL_LEQUAL);
+  }
   glBindVertexArray(mesh.vertexArrays[isLines ? 1 : 0]);
   glDrawElements(isLines ? GL_LINES : GL_TRIANGLES, count, GL_UNSIGNED_INT, nullptr);
+  if (item.surface == Surface::Background) {
+    glDepthRange(0, 1);
+    glDepthFunc(GL_LESS);
+  }
   if (item.pushBack) glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
 Status GlDevice::Draw(const DrawList& list, int width, int height) {
   Diagnostics problems;
-  glViewport(0, 0, width, height);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);  // A cloth shows both sides; the back is shaded with the front's normals, as in the course.
@@ -308,29 +355,29 @@ Status GlDevice::Draw(const DrawList& list, int width, int height) {
   // The course draws without conversion: what a shader writes is what the screen shows.
   glDisable(GL_FRAMEBUFFER_SRGB);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  impl_->DrawShadowMap(list);
+  glViewport(0, 0, width, height);
   glClearColor(list.clearColor[0], list.clearColor[1], list.clearColor[2], list.clearColor[3]);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 
-  const std::string* current = nullptr;
+  const DrawItem* previous = nullptr;
   const ShaderProgram* shader = nullptr;
   for (const DrawItem& item : list.items) {
-    if (!current || *current != item.shader) {
-      current = &item.shader;
-      shader = impl_->shaders.Find(item.shader);
+    if (!previous || previous->shader != item.shader || previous->surface != item.surface) {
+      previous = &item;
+      shader = impl_->shaders.Find(item.shader, item.surface);
       if (shader) {
         glUseProgram(shader->program);
         impl_->SetUniforms(*shader, list);
-      } else {
-        const Diagnostics& found = impl_->shaders.Problems(item.shader);
+      } else if (const Diagnostics& found = impl_->shaders.Problems(item.shader); HasErrors(found)) {
         const bool isNew = std::none_of(problems.begin(), problems.end(), [&](const Diagnostic& d) {
-          return !found.empty() && d.message == found.front().message && d.place.file == found.front().place.file;
+          return d.message == found.front().message && d.place.file == found.front().place.file;
         });
         if (isNew) problems.insert(problems.end(), found.begin(), found.end());
-        if (!impl_->fallback) impl_->fallback = MakeFallback();
-        glUseProgram(impl_->fallback);
+        impl_->UsePlain(list.viewProjection);
       }
     }
-    impl_->Draw(item, list, shader);
+    if (shader || item.surface != Surface::Background) impl_->Draw(item, shader);
   }
   glBindVertexArray(0);
   glUseProgram(0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@ namespace {
 
 // Flat triangles cut corners: at its full radius the drawn cloth would dip into the drawn sphere.
 constexpr double kDrawnSphereRadius = 0.92;
+constexpr double kWidestLight = 0.98;  // Sine of half the angle that a shadow map covers.
 constexpr Color kPlaneColor{0.7f, 0.7f, 0.7f, 1};
 constexpr Color kOverlayColor{0.08f, 0.08f, 0.08f, 1};
 
@@ -69,6 +71,41 @@ void Update(ClothMesh& cloth, const ClothShape& shape, Tangents tangents) {
   if (isOther) mesh.meshVersion += 1;
 }
 
+struct Box {
+  Vec3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
+
+  void Add(const Vec3& a, const Vec3& b) {
+    low = {std::min(low.x, a.x), std::min(low.y, a.y), std::min(low.z, a.z)};
+    high = {std::max(high.x, b.x), std::max(high.y, b.y), std::max(high.z, b.z)};
+  }
+};
+
+// The box of positions, x y z each.
+Box BoxOf(const std::vector<float>& positions) {
+  float low[3] = {1e30f, 1e30f, 1e30f}, high[3] = {-1e30f, -1e30f, -1e30f};
+  for (std::size_t i = 0; i < positions.size(); i += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], positions[i + k]);
+      high[k] = std::max(high[k], positions[i + k]);
+    }
+  }
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+// From the light, the sphere around the box fills the picture.
+Mat4 FitLight(const Vec3& light, const Box& box) {
+  if (box.low.x > box.high.x) return {};
+  const Vec3 center = 0.5 * (box.low + box.high);
+  const double radius = std::max(0.5 * Length(box.high - box.low), 1e-6);
+  const double distance = std::max(Length(center - light), 1e-6);
+  // A light inside of the sphere sees but a part of it.
+  const double angle = 2 * std::asin(std::min(radius / distance, kWidestLight));
+  const double nearPlane = std::max(distance - radius, 0.01 * radius);
+  const Vec3 view = center - light;
+  const Vec3 up = std::abs(view.y) < 0.9 * Length(view) ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
+  return Perspective(angle, 1, nearPlane, distance + radius) * LookAt(light, center, up);
+}
+
 }  // namespace
 
 struct SceneView::Impl {
@@ -77,6 +114,7 @@ struct SceneView::Impl {
   int sphereLatitudes = 0, sphereLongitudes = 0;
   std::vector<PlaneSettings> planeSettings;
   std::vector<std::shared_ptr<DrawMesh>> planes;
+  std::shared_ptr<DrawMesh> background = std::make_shared<DrawMesh>(MakeSphereMesh(4, 8));
   std::vector<ClothShape> shapes;  // Of a World's cloths, while its list is made.
   DrawList list;
 
@@ -129,10 +167,12 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   list.heightScaling = static_cast<float>(view.look.heightScaling);
   list.uniforms = view.uniforms;
   list.textures = view.textures;
+  list.shadowMapSize = view.shadowMapSize;
   list.items.clear();
 
   const Color color{float(view.look.color.x), float(view.look.color.y), float(view.look.color.z), 1};
   const bool linesOnly = view.look.shader == "Wireframe";
+  Box casters;
   impl_->cloths.resize(cloths.size());
   for (std::size_t i = 0; view.cloths && i < cloths.size(); ++i) {
     percale::Update(impl_->cloths[i], cloths[i], view.look.tangents);
@@ -143,7 +183,11 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
     }
     item.primitive = DrawItem::Primitive::Triangles;
     item.pushBack = view.wireframe;
+    item.castsShadow = true;
     list.items.push_back(item);
+    if (cloths[i].positions.empty()) continue;
+    const Box box = BoxOf(item.mesh->positions);
+    casters.Add(box.low, box.high);
   }
 
   impl_->UpdateColliders(scene, view);
@@ -155,10 +199,15 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
       item.model(0, 3) = sphere.origin.x;
       item.model(1, 3) = sphere.origin.y;
       item.model(2, 3) = sphere.origin.z;
+      item.surface = Surface::Sphere;
+      item.castsShadow = true;
       list.items.push_back(std::move(item));
+      const Vec3 extent{radius, radius, radius};
+      casters.Add(sphere.origin - extent, sphere.origin + extent);
     }
     for (const std::shared_ptr<DrawMesh>& plane : impl_->planes) {
-      list.items.push_back({plane, DrawItem::Primitive::Triangles, view.look.shader, kPlaneColor, {}, false});
+      list.items.push_back(
+          {plane, DrawItem::Primitive::Triangles, view.look.shader, kPlaneColor, {}, false, Surface::Plane});
     }
   }
   if (view.cloths && view.wireframe && !linesOnly) {
@@ -166,6 +215,14 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
       list.items.push_back({cloth.mesh, DrawItem::Primitive::Lines, "Wireframe", kOverlayColor, {}, false});
     }
   }
+  // Last, where nothing else was drawn. Seen from the middle of a ball, only directions count.
+  DrawItem background{impl_->background,  DrawItem::Primitive::Triangles, view.look.shader, color, {}, false,
+                      Surface::Background};
+  background.model(0, 3) = list.cameraPosition.x;
+  background.model(1, 3) = list.cameraPosition.y;
+  background.model(2, 3) = list.cameraPosition.z;
+  list.items.push_back(std::move(background));
+  list.lightViewProjection = FitLight(list.lightPosition, casters);
   return list;
 }
 

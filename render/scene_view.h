@@ -23,6 +23,7 @@ struct View {
   bool wireframe = false;                         ///< Draw the springs over the surface as well.
   bool cloths = true;                             ///< Draw the cloths.
   bool colliders = true;                          ///< Draw the spheres and planes.
+  int shadowMapSize = 1024;                       ///< [pixel]; 0: no shadows. Used by shaders that draw shadows.
   UniformValues uniforms;                         ///< Parameters of shaders that differ from their defaults.
   std::array<std::filesystem::path, 4> textures;  ///< PNG files for u_texture_1..4; empty: the project's own.
 

@@ -3,10 +3,9 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
-#include <fstream>
-#include <initializer_list>
 #include <iterator>
 #include <sstream>
 #include <system_error>
@@ -14,13 +13,15 @@
 
 #include "core/text.h"
 #include "io/atomic_file.h"
+#include "render/shader_text.h"
 
 namespace percale {
 namespace {
 
 constexpr const char* kCourseOrder[] = {"Wireframe", "Normal",       "Diffuse", "Phong", "Texture",
                                         "Bump",      "Displacement", "Mirror",  "Flag"};
-constexpr std::uintmax_t kMaxShaderBytes = 1 << 20;
+// Endings of the names of a shader's parts, in the order of Surface.
+constexpr const char* kParts[] = {"", ".sphere", ".plane", ".background"};
 constexpr std::size_t kMaxMessages = 20;  // Of one shader: the first are the ones to read.
 
 /// The uniforms that the program sets, which docs/shaders.md lists; u_lines is for Wireframe alone.
@@ -32,6 +33,7 @@ struct KnownUniform {
 constexpr KnownUniform kUniforms[] = {
     {"u_model", GL_FLOAT_MAT4, "mat4"},
     {"u_view_projection", GL_FLOAT_MAT4, "mat4"},
+    {"u_light_view_projection", GL_FLOAT_MAT4, "mat4"},
     {"u_color", GL_FLOAT_VEC4, "vec4"},
     {"u_cam_pos", GL_FLOAT_VEC3, "vec3"},
     {"u_light_pos", GL_FLOAT_VEC3, "vec3"},
@@ -45,6 +47,7 @@ constexpr KnownUniform kUniforms[] = {
     {"u_texture_3_size", GL_FLOAT_VEC2, "vec2"},
     {"u_texture_4_size", GL_FLOAT_VEC2, "vec2"},
     {"u_texture_cubemap", GL_SAMPLER_CUBE, "samplerCube"},
+    {"u_shadow_map", GL_SAMPLER_2D_SHADOW, "sampler2DShadow"},
     {"u_normal_scaling", GL_FLOAT, "float"},
     {"u_height_scaling", GL_FLOAT, "float"},
     {"u_lines", GL_BOOL, "bool"},
@@ -67,31 +70,6 @@ FileStamp StampOf(const std::filesystem::path& file) {
   return stamp;
 }
 
-Result<std::string> ReadText(const std::filesystem::path& file) {
-  const FileStamp stamp = StampOf(file);
-  if (stamp.size > kMaxShaderBytes) {
-    std::error_code error;
-    const bool exists = std::filesystem::exists(file, error);
-    return MakeError(PathText(file),
-                     exists ? "expected the text of a shader, found no file of at most 1 MB" : "does not exist");
-  }
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) return MakeError(PathText(file), "cannot be read");
-  if (text.rfind("\xef\xbb\xbf", 0) == 0) text.erase(0, 3);  // A byte-order mark would confuse the compiler.
-  return text;
-}
-
-std::string LineOf(const std::string& text, int line) {
-  std::istringstream in(text);
-  std::string found;
-  for (int i = 0; i < line; ++i) {
-    if (!std::getline(in, found)) return {};
-  }
-  while (!found.empty() && (found.back() == '\r' || found.back() == ' ')) found.pop_back();
-  return found.substr(0, 200);
-}
-
 int ReadInt(const std::string& text, std::size_t& at) {
   int value = 0;
   while (at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) && value < 1000000) {
@@ -102,14 +80,10 @@ int ReadInt(const std::string& text, std::size_t& at) {
 
 // One line of a driver's log. The forms in use are "0:12(5): error: ..." (Mesa),
 // "0(12) : error C0000: ..." (NVIDIA) and "ERROR: 0:12: ..." (Apple, AMD, Intel, ANGLE).
-Diagnostic ParseLogLine(const std::string& line, const std::string& file, const std::string& source) {
-  Diagnostic message;
-  message.place.file = file;
+Diagnostic ParseLogLine(const std::string& line, const ShaderText& source) {
   std::string lower = line;
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  if (lower.find("warning") != std::string::npos && lower.find("error") == std::string::npos) {
-    message.severity = Severity::Warning;
-  }
+  int number = 0, column = 0;
   std::size_t at = 0;
   for (const char* prefix : {"error:", "warning:"}) {
     if (lower.rfind(prefix, 0) == 0) at = std::string(prefix).size();
@@ -120,10 +94,10 @@ Diagnostic ParseLogLine(const std::string& line, const std::string& file, const 
   if (at > start && at + 1 < line.size() && (line[at] == ':' || line[at] == '(')) {
     const bool isNvidia = line[at] == '(';
     ++at;
-    message.place.line = ReadInt(line, at);
+    number = ReadInt(line, at);
     if (!isNvidia && at < line.size() && line[at] == '(') {
       ++at;
-      message.place.column = ReadInt(line, at);
+      column = ReadInt(line, at);
     }
     while (at < line.size() && (line[at] == ')' || line[at] == ':' || line[at] == ' ')) ++at;
     for (const char* prefix : {"error:", "warning:"}) {
@@ -133,38 +107,37 @@ Diagnostic ParseLogLine(const std::string& line, const std::string& file, const 
   } else {
     at = start;
   }
+  Diagnostic message = source.At(number, column);
   message.message = line.substr(at);
-  if (message.place.line > 0) {
-    message.excerpt = LineOf(source, message.place.line);
-    if (message.place.column <= static_cast<int>(message.excerpt.size())) message.caret = message.place.column;
+  if (lower.find("warning") != std::string::npos && lower.find("error") == std::string::npos) {
+    message.severity = Severity::Warning;
   }
   return message;
 }
 
-void AddLog(const std::string& log, const std::string& file, const std::string& source, bool failed,
-            Diagnostics& problems) {
+void AddLog(const std::string& log, const ShaderText& source, bool failed, Diagnostics& problems) {
   std::istringstream in(log);
   Diagnostics found;
   for (std::string line; std::getline(in, line) && found.size() < kMaxMessages;) {
     while (!line.empty() && (std::isspace(static_cast<unsigned char>(line.back())) || line.back() == '\0'))
       line.pop_back();
-    if (!line.empty()) found.push_back(ParseLogLine(line, file, source));
+    if (!line.empty()) found.push_back(ParseLogLine(line, source));
   }
   if (failed && !HasErrors(found)) {
-    found.insert(found.begin(), MakeError(file, "the driver refuses the shader" +
-                                                    std::string(log.empty() ? " and gives no reason" : "")));
+    found.insert(found.begin(),
+                 MakeError(PathText(source.files.front().path),
+                           "the driver refuses the shader" + std::string(log.empty() ? " and gives no reason" : "")));
   }
   // What a driver says about shaders that it accepts is chatter.
   if (failed) problems.insert(problems.end(), found.begin(), found.end());
 }
 
 /// A warning at the line that declares the uniform, in the first of the texts that does.
-Diagnostic UniformWarning(std::string_view name, std::string message,
-                          std::initializer_list<std::pair<std::filesystem::path, std::string_view>> texts) {
-  Diagnostic warning = MakeWarning(std::move(message));
+Diagnostic UniformWarning(std::string_view name, std::string message, std::initializer_list<const ShaderText*> texts) {
   const auto isName = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-  for (const auto& [file, text] : texts) {
-    std::istringstream in{std::string(text)};
+  Diagnostic warning = (*texts.begin())->At(0);
+  for (const ShaderText* text : texts) {
+    std::istringstream in{text->text};
     int number = 0;
     for (std::string line; std::getline(in, line);) {
       ++number;
@@ -172,13 +145,13 @@ Diagnostic UniformWarning(std::string_view name, std::string message,
                         at = line.find(name, uniform == std::string::npos ? 0 : uniform);
       if (uniform == std::string::npos || at == std::string::npos) continue;
       if (isName(line[at - 1]) || (at + name.size() < line.size() && isName(line[at + name.size()]))) continue;
-      warning.place = {PathText(file), number, static_cast<int>(at) + 1};
-      warning.excerpt = LineOf(std::string(text), number);
-      if (at < warning.excerpt.size()) warning.caret = warning.place.column;
-      return warning;
+      warning = text->At(number, static_cast<int>(at) + 1);
+      break;
     }
-    if (warning.place.file.empty()) warning.place.file = PathText(file);
+    if (warning.place.line > 0) break;
   }
+  warning.severity = Severity::Warning;
+  warning.message = std::move(message);
   return warning;
 }
 
@@ -194,17 +167,17 @@ std::string UniformProblem(std::string_view name, GLenum type) {
   std::vector<std::string_view> names;
   for (const KnownUniform& uniform : kUniforms) names.push_back(uniform.name);
   const std::string near = DidYouMean(name, names);
-  const bool isSampler = type == GL_SAMPLER_2D || type == GL_SAMPLER_CUBE;
+  const bool isSampler = type == GL_SAMPLER_2D || type == GL_SAMPLER_CUBE || type == GL_SAMPLER_2D_SHADOW;
   if (isSampler) {
     return "there is no texture " + std::string(name) + near +
-           "; there are u_texture_1 to u_texture_4 and u_texture_cubemap";
+           "; there are u_texture_1 to u_texture_4, u_texture_cubemap and u_shadow_map";
   }
   return near.empty() ? "" : "nothing sets " + std::string(name) + near;
 }
 
-GLuint Compile(GLenum stage, const std::string& file, const std::string& source, Diagnostics& problems) {
+GLuint Compile(GLenum stage, const ShaderText& source, Diagnostics& problems) {
   const GLuint shader = glCreateShader(stage);
-  const char* text = source.c_str();
+  const char* text = source.text.c_str();
   glShaderSource(shader, 1, &text, nullptr);
   glCompileShader(shader);
   GLint good = GL_FALSE, length = 0;
@@ -213,10 +186,47 @@ GLuint Compile(GLenum stage, const std::string& file, const std::string& source,
   std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
   glGetShaderInfoLog(shader, length, nullptr, log.data());
   log.resize(log.find('\0') == std::string::npos ? log.size() : log.find('\0'));
-  AddLog(log, file, source, good != GL_TRUE, problems);
+  AddLog(log, source, good != GL_TRUE, problems);
   if (good == GL_TRUE) return shader;
   glDeleteShader(shader);
   return 0;
+}
+
+/// The program of two texts, or 0.
+GLuint Link(const ShaderText& vertexText, const ShaderText& fragmentText, Diagnostics& problems) {
+  // Both are compiled even if the first fails, so that all errors show at once.
+  const GLuint vertex = Compile(GL_VERTEX_SHADER, vertexText, problems);
+  const GLuint fragment = Compile(GL_FRAGMENT_SHADER, fragmentText, problems);
+  GLuint program = 0;
+  if (vertex && fragment) {
+    program = glCreateProgram();
+    glAttachShader(program, vertex);
+    glAttachShader(program, fragment);
+    const char* attributes[] = {"in_position", "in_normal", "in_uv", "in_tangent"};
+    for (GLuint i = 0; i < 4; ++i) glBindAttribLocation(program, i, attributes[i]);
+    glLinkProgram(program);
+    GLint good = GL_FALSE, length = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &good);
+    if (good != GL_TRUE) {
+      glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
+      std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+      glGetProgramInfoLog(program, length, nullptr, log.data());
+      log.resize(std::min(log.find('\0'), log.size()));
+      AddLog(log, fragmentText, true, problems);
+      problems.back().message += " (linking with " + vertexText.files.front().path.filename().string() + ")";
+      glDeleteProgram(program);
+      program = 0;
+    }
+  }
+  if (vertex) glDeleteShader(vertex);
+  if (fragment) glDeleteShader(fragment);
+  return program;
+}
+
+bool IsPart(const std::string& name) {
+  return std::any_of(std::begin(kParts) + 1, std::end(kParts), [&](std::string_view ending) {
+    return name.size() > ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
+  });
 }
 
 }  // namespace
@@ -227,7 +237,8 @@ std::vector<std::string> ListShaders(const std::filesystem::path& folder) {
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::filesystem::path& file = entry->path();
     // A name with a leading dot is an editor's scratch file.
-    if (file.extension() == ".frag" && file.filename().string().front() != '.') names.push_back(file.stem().string());
+    if (file.extension() != ".frag" || file.filename().string().front() == '.') continue;
+    if (const std::string name = file.stem().string(); !IsPart(name)) names.push_back(name);
   }
   const auto rank = [](const std::string& name) {
     return std::find(std::begin(kCourseOrder), std::end(kCourseOrder), name) - std::begin(kCourseOrder);
@@ -238,14 +249,20 @@ std::vector<std::string> ListShaders(const std::filesystem::path& folder) {
 }
 
 struct ShaderLibrary::Impl {
-  struct Entry {
+  /// A shader or one of its parts: two texts and their program.
+  struct Part {
+    std::filesystem::path fragmentFile;      // Empty: the shader has no such part.
+    ShaderText vertex, fragment;             // As they were last read.
     std::unique_ptr<ShaderProgram> program;  // The last good one.
-    Diagnostics problems;                    // Of the latest files.
+  };
+  struct Entry {
+    std::array<Part, std::size(kParts)> parts;
+    std::vector<std::pair<std::filesystem::path, FileStamp>> files;  // Missing ones too: all that matter.
+    Diagnostics problems;                                            // Of the latest files.
     std::vector<ShaderParameter> parameters;
     Diagnostics parameterProblems;
     bool isCompiled = false;  // The latest files have been tried.
     bool isParsed = false;
-    FileStamp fragment, vertex, defaultVertex;  // Of the files when they were read.
   };
 
   std::filesystem::path folder;
@@ -254,17 +271,15 @@ struct ShaderLibrary::Impl {
   Diagnostics unknown;  // For a name that is no shader.
 
   ~Impl() {
-    for (auto& [name, entry] : entries) Drop(entry);
+    for (auto& [name, entry] : entries) {
+      for (Part& part : entry.parts) Drop(part);
+    }
   }
 
-  static void Drop(Entry& entry) {
-    if (entry.program) glDeleteProgram(entry.program->program);
-    entry.program.reset();
+  static void Drop(Part& part) {
+    if (part.program) glDeleteProgram(part.program->program);
+    part.program.reset();
   }
-
-  std::filesystem::path FragmentFile(std::string_view name) const { return folder / (std::string(name) + ".frag"); }
-  std::filesystem::path VertexFile(std::string_view name) const { return folder / (std::string(name) + ".vert"); }
-  std::filesystem::path DefaultVertexFile() const { return folder / "Default.vert"; }
 
   bool IsKnown(std::string_view name) const { return std::find(names.begin(), names.end(), name) != names.end(); }
 
@@ -273,31 +288,55 @@ struct ShaderLibrary::Impl {
     return found != entries.end() ? found->second : entries[std::string(name)];
   }
 
-  void Stamp(std::string_view name, Entry& entry) const {
-    entry.fragment = StampOf(FragmentFile(name));
-    entry.vertex = StampOf(VertexFile(name));
-    entry.defaultVertex = StampOf(DefaultVertexFile());
-  }
-
-  std::filesystem::path VertexFileInUse(std::string_view name, const Entry& entry) const {
-    return entry.vertex == FileStamp{} ? DefaultVertexFile() : VertexFile(name);
+  /// Reads the files of a part, and remembers each.
+  void Read(Entry& entry, Part& part, const std::string& name, bool isOptional) {
+    const auto stamp = [&](const std::filesystem::path& file) {
+      const auto known = [&](const auto& each) { return each.first == file; };
+      const auto found = std::find_if(entry.files.begin(), entry.files.end(), known);
+      return found != entry.files.end() ? found->second : entry.files.emplace_back(file, StampOf(file)).second;
+    };
+    part.fragmentFile = folder / (name + ".frag");
+    if (stamp(part.fragmentFile) == FileStamp{} && isOptional) {
+      part.fragmentFile.clear();
+      Drop(part);
+      return;
+    }
+    std::filesystem::path vertexFile = folder / (name + ".vert");
+    if (stamp(vertexFile) == FileStamp{}) vertexFile = folder / "Default.vert";
+    part.fragment = ReadShaderText(part.fragmentFile);
+    part.vertex = ReadShaderText(vertexFile);
+    for (const ShaderText* text : {&part.fragment, &part.vertex}) {
+      for (const ShaderText::File& file : text->files) stamp(file.path);
+    }
   }
 
   void Parse(std::string_view name, Entry& entry) {
     if (entry.isParsed) return;
     entry.isParsed = true;
+    entry.files.clear();
     entry.parameters.clear();
     entry.parameterProblems.clear();
-    Stamp(name, entry);
-    // A uniform may stand in both files: the fragment shader, which is the one people edit, wins.
-    for (const std::filesystem::path& file : {FragmentFile(name), VertexFileInUse(name, entry)}) {
-      const Result<std::string> text = ReadText(file);
-      if (!text) continue;  // Reported when the shader is compiled.
-      for (ShaderParameter& parameter : ParseShaderParameters(*text, PathText(file), entry.parameterProblems)) {
-        const auto same = [&](const ShaderParameter& other) { return other.name == parameter.name; };
-        if (std::none_of(entry.parameters.begin(), entry.parameters.end(), same)) {
-          entry.parameters.push_back(std::move(parameter));
+    std::vector<std::filesystem::path> parsed;
+    for (std::size_t i = 0; i < entry.parts.size(); ++i) {
+      Part& part = entry.parts[i];
+      Read(entry, part, std::string(name) + kParts[i], i > 0);
+      if (part.fragmentFile.empty()) continue;
+      // A uniform may stand in several files: the fragment shader, which is the one people edit, wins.
+      for (const ShaderText* text : {&part.fragment, &part.vertex}) {
+        for (const ShaderText::File& file : text->files) {
+          if (std::find(parsed.begin(), parsed.end(), file.path) != parsed.end()) continue;
+          parsed.push_back(file.path);
+          AddParameters(entry, file);
         }
+      }
+    }
+  }
+
+  static void AddParameters(Entry& entry, const ShaderText::File& file) {
+    for (ShaderParameter& parameter : ParseShaderParameters(file.text, PathText(file.path), entry.parameterProblems)) {
+      const auto same = [&](const ShaderParameter& other) { return other.name == parameter.name; };
+      if (std::none_of(entry.parameters.begin(), entry.parameters.end(), same)) {
+        entry.parameters.push_back(std::move(parameter));
       }
     }
   }
@@ -307,69 +346,53 @@ struct ShaderLibrary::Impl {
     Parse(name, entry);
     entry.isCompiled = true;
     entry.problems = entry.parameterProblems;
-    const std::filesystem::path vertexFile = VertexFileInUse(name, entry), fragmentFile = FragmentFile(name);
-    const Result<std::string> vertexText = ReadText(vertexFile), fragmentText = ReadText(fragmentFile);
-    for (const Result<std::string>* text : {&vertexText, &fragmentText}) {
-      if (!*text) entry.problems.insert(entry.problems.end(), text->diagnostics().begin(), text->diagnostics().end());
+    for (Part& part : entry.parts) {
+      if (!part.fragmentFile.empty()) Build(entry, part);
     }
-    if (!vertexText || !fragmentText) return;
-
-    // Both are compiled even if the first fails, so that all errors show at once.
-    const GLuint vertex = Compile(GL_VERTEX_SHADER, PathText(vertexFile), *vertexText, entry.problems);
-    const GLuint fragment = Compile(GL_FRAGMENT_SHADER, PathText(fragmentFile), *fragmentText, entry.problems);
-    GLuint program = 0;
-    if (vertex && fragment) {
-      program = glCreateProgram();
-      glAttachShader(program, vertex);
-      glAttachShader(program, fragment);
-      const char* attributes[] = {"in_position", "in_normal", "in_uv", "in_tangent"};
-      for (GLuint i = 0; i < 4; ++i) glBindAttribLocation(program, i, attributes[i]);
-      glLinkProgram(program);
-      GLint good = GL_FALSE, length = 0;
-      glGetProgramiv(program, GL_LINK_STATUS, &good);
-      if (good != GL_TRUE) {
-        glGetProgramiv(program, GL_INFO_LOG_LENGTH, &length);
-        std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-        glGetProgramInfoLog(program, length, nullptr, log.data());
-        log.resize(std::min(log.find('\0'), log.size()));
-        AddLog(log, PathText(fragmentFile), *fragmentText, true, entry.problems);
-        entry.problems.back().message += " (linking with " + vertexFile.filename().string() + ")";
-        glDeleteProgram(program);
-        program = 0;
-      }
-    }
-    if (vertex) glDeleteShader(vertex);
-    if (fragment) glDeleteShader(fragment);
-    if (!program) return;
-
-    auto built = std::make_unique<ShaderProgram>();
-    built->program = program;
-    built->parameters = entry.parameters;
-    GLint count = 0;
-    glGetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
-    for (GLint i = 0; i < count; ++i) {
-      char uniform[256];
-      GLint size = 0;
-      GLenum type = 0;
-      glGetActiveUniform(program, static_cast<GLuint>(i), sizeof uniform, nullptr, &size, &type, uniform);
-      built->locations[uniform] = glGetUniformLocation(program, uniform);
-      const bool isParameter = std::any_of(entry.parameters.begin(), entry.parameters.end(),
-                                           [&](const ShaderParameter& p) { return p.name == uniform; });
-      const std::string problem = isParameter ? "" : UniformProblem(uniform, type);
-      if (problem.empty()) continue;
-      entry.problems.push_back(
-          UniformWarning(uniform, problem, {{fragmentFile, *fragmentText}, {vertexFile, *vertexText}}));
-    }
-    Drop(entry);
-    entry.program = std::move(built);
   }
 
-  bool HasChanged(std::string_view name, const Entry& entry) const {
-    Entry now;
-    Stamp(name, now);
-    const bool usedDefault = entry.vertex == FileStamp{};
-    return now.fragment != entry.fragment || now.vertex != entry.vertex ||
-           (usedDefault && now.defaultVertex != entry.defaultVertex);
+  static void Build(Entry& entry, Part& part) {
+    for (const ShaderText* text : {&part.vertex, &part.fragment}) {
+      for (const Diagnostic& problem : text->problems) AddNew(problem, entry.problems);
+    }
+    if (HasErrors(part.vertex.problems) || HasErrors(part.fragment.problems)) return;
+    Diagnostics problems;
+    const GLuint program = Link(part.vertex, part.fragment, problems);
+    if (program) {
+      auto built = std::make_unique<ShaderProgram>();
+      built->program = program;
+      built->parameters = entry.parameters;
+      GLint count = 0;
+      glGetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
+      for (GLint i = 0; i < count; ++i) {
+        char uniform[256];
+        GLint size = 0;
+        GLenum type = 0;
+        glGetActiveUniform(program, static_cast<GLuint>(i), sizeof uniform, nullptr, &size, &type, uniform);
+        built->locations[uniform] = glGetUniformLocation(program, uniform);
+        const bool isParameter = std::any_of(entry.parameters.begin(), entry.parameters.end(),
+                                             [&](const ShaderParameter& p) { return p.name == uniform; });
+        const std::string problem = isParameter ? "" : UniformProblem(uniform, type);
+        if (!problem.empty()) problems.push_back(UniformWarning(uniform, problem, {&part.fragment, &part.vertex}));
+      }
+      Drop(part);
+      part.program = std::move(built);
+    }
+    for (const Diagnostic& problem : problems) AddNew(problem, entry.problems);
+  }
+
+  /// Parts that share a file have its problems in common: each is told once.
+  static void AddNew(const Diagnostic& problem, Diagnostics& problems) {
+    const auto same = [&](const Diagnostic& other) {
+      return other.message == problem.message && other.place.file == problem.place.file &&
+             other.place.line == problem.place.line && other.place.column == problem.place.column;
+    };
+    if (std::none_of(problems.begin(), problems.end(), same)) problems.push_back(problem);
+  }
+
+  static bool HasChanged(const Entry& entry) {
+    return std::any_of(entry.files.begin(), entry.files.end(),
+                       [](const auto& file) { return StampOf(file.first) != file.second; });
   }
 
   void Renew(std::string_view name, Entry& entry) {
@@ -396,12 +419,14 @@ const std::filesystem::path& ShaderLibrary::folder() const {
   return impl_->folder;
 }
 
-const ShaderProgram* ShaderLibrary::Find(std::string_view name) {
+const ShaderProgram* ShaderLibrary::Find(std::string_view name, Surface surface) {
   const auto found = impl_->entries.find(name);
   if (found == impl_->entries.end() && !impl_->IsKnown(name)) return nullptr;
   Impl::Entry& entry = impl_->EntryOf(name);
   if (!entry.isCompiled) impl_->Build(name, entry);
-  return entry.program.get();
+  const Impl::Part& part = entry.parts[static_cast<std::size_t>(surface)];
+  if (part.fragmentFile.empty() && surface != Surface::Background) return entry.parts[0].program.get();
+  return part.program.get();
 }
 
 const Diagnostics& ShaderLibrary::Problems(std::string_view name) {
@@ -431,7 +456,7 @@ bool ShaderLibrary::ReloadChanged() {
     changed = true;
   }
   for (auto& [name, entry] : impl_->entries) {
-    if (!(entry.isCompiled || entry.isParsed) || !impl_->HasChanged(name, entry)) continue;
+    if (!(entry.isCompiled || entry.isParsed) || !Impl::HasChanged(entry)) continue;
     impl_->Renew(name, entry);
     changed = true;
   }

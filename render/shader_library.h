@@ -1,7 +1,9 @@
 #pragma once
 /// \file
 /// Shaders, found by file name: a file shaders/NAME.frag is a shader called NAME; its vertex shader
-/// is NAME.vert where there is one, else Default.vert. A new file is a new shader.
+/// is NAME.vert where there is one, else Default.vert. A new file is a new shader. Files
+/// NAME.sphere.frag, NAME.plane.frag and NAME.background.frag, each optional and each with a vertex
+/// shader by the same rule, are parts of it, for the other surfaces of a picture.
 ///
 /// A uniform with a comment behind it is a parameter that the user can set:
 ///
@@ -48,6 +50,9 @@ struct ShaderParameter {
 std::vector<ShaderParameter> ParseShaderParameters(std::string_view text, const std::string& file,
                                                    Diagnostics& diagnostics);
 
+/// What is drawn: a shader may have a part of its own for each.
+enum class Surface { Cloth, Sphere, Plane, Background };
+
 /// Names of the shaders in a folder: the course's in its order (Wireframe, Normal, Diffuse, Phong,
 /// Texture, Bump, Displacement, Mirror, Flag), then the others by alphabet. Needs no graphics.
 std::vector<std::string> ListShaders(const std::filesystem::path& folder);
@@ -77,20 +82,20 @@ class ShaderLibrary {
   const std::vector<std::string>& names() const;
   const std::filesystem::path& folder() const;
 
-  /// The program called `name`. When its files cannot be compiled: the last good one, or null when
-  /// there never was one; Problems(name) says why. The pointer stays valid until the next
-  /// ReloadChanged or Reload.
-  const ShaderProgram* Find(std::string_view name);
+  /// The program of a shader for a surface: of its part where it has one, else its own, but none for
+  /// a background. When the files cannot be compiled: the last good one, or null when there never was
+  /// one; Problems(name) says why. The pointer stays valid until the next ReloadChanged or Reload.
+  const ShaderProgram* Find(std::string_view name, Surface surface = Surface::Cloth);
 
   /// Errors and warnings of the latest files of a shader, each with file, line and the driver's
   /// words; an unknown name gives one error with the nearest name. Empty: all is well.
   const Diagnostics& Problems(std::string_view name);
 
-  /// Parameters of a shader, without compiling it; empty for an unknown name. Valid until the next
+  /// Parameters of a shader and of its parts, without compiling it; empty for an unknown name. Valid until the next
   /// ReloadChanged or Reload.
   std::span<const ShaderParameter> Parameters(std::string_view name);
 
-  /// Looks at the times of the files, and compiles again what has changed since. New and removed
+  /// Looks at the times of the files, included ones too, and compiles again what has changed since. New and removed
   /// files change names(). Cheap: call it a few times per second. Returns whether anything changed.
   bool ReloadChanged();
   /// Compiles everything that is in use again.
