@@ -120,7 +120,7 @@ struct SceneView::Impl {
 
   void UpdateColliders(const Scene& scene, const View& view) {
     const int latitudes = std::max(2, view.sphereLatitudes), longitudes = std::max(3, view.sphereLongitudes);
-    if (!scene.spheres.empty() && (!sphere || sphereLatitudes != latitudes || sphereLongitudes != longitudes)) {
+    if (!sphere || sphereLatitudes != latitudes || sphereLongitudes != longitudes) {
       sphere = std::make_shared<DrawMesh>(MakeSphereMesh(latitudes, longitudes));
       sphereLatitudes = latitudes;
       sphereLongitudes = longitudes;
@@ -155,11 +155,11 @@ const DrawList& SceneView::Update(const World& world, const View& view, int widt
     const ClothView cloth = world.Cloth(i);
     shapes.push_back({cloth.positions(), cloth.uv(), cloth.triangles(), cloth.springs()});
   }
-  return Update(world.scene(), shapes, view, width, height);
+  return Update(world.scene(), shapes, view, width, height, world.balls());
 }
 
 const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape> cloths, const View& view, int width,
-                                  int height) {
+                                  int height, std::span<const Ball> balls) {
   DrawList& list = impl_->list;
   list.viewProjection = view.camera.ViewProjection(width, height);
   list.cameraPosition = view.camera.position();
@@ -192,19 +192,20 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
 
   impl_->UpdateColliders(scene, view);
   if (view.colliders) {
-    for (const SphereSettings& sphere : scene.spheres) {
+    const auto addSphere = [&](const Vec3& centre, double radius) {
       DrawItem item{impl_->sphere, DrawItem::Primitive::Triangles, view.look.shader, color, {}, false};
-      const double radius = kDrawnSphereRadius * sphere.radius;
       item.model(0, 0) = item.model(1, 1) = item.model(2, 2) = radius;
-      item.model(0, 3) = sphere.origin.x;
-      item.model(1, 3) = sphere.origin.y;
-      item.model(2, 3) = sphere.origin.z;
+      item.model(0, 3) = centre.x;
+      item.model(1, 3) = centre.y;
+      item.model(2, 3) = centre.z;
       item.surface = Surface::Sphere;
       item.castsShadow = true;
       list.items.push_back(std::move(item));
       const Vec3 extent{radius, radius, radius};
-      casters.Add(sphere.origin - extent, sphere.origin + extent);
-    }
+      casters.Add(centre - extent, centre + extent);
+    };
+    for (const SphereSettings& s : scene.spheres) addSphere(s.origin, kDrawnSphereRadius * s.radius);
+    for (const Ball& ball : balls) addSphere(ball.position, kDrawnSphereRadius * ball.radius);
     for (const std::shared_ptr<DrawMesh>& plane : impl_->planes) {
       list.items.push_back(
           {plane, DrawItem::Primitive::Triangles, view.look.shader, kPlaneColor, {}, false, Surface::Plane});

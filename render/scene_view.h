@@ -22,7 +22,7 @@ struct View {
   int sphereLongitudes = 40;                      ///< >= 3: segments of a ring, the course's -o.
   bool wireframe = false;                         ///< Draw the springs over the surface as well.
   bool cloths = true;                             ///< Draw the cloths.
-  bool colliders = true;                          ///< Draw the spheres and planes.
+  bool colliders = true;                          ///< Draw the spheres, planes and balls.
   int shadowMapSize = 1024;                       ///< [pixel]; 0: no shadows. Used by shaders that draw shadows.
   UniformValues uniforms;                         ///< Parameters of shaders that differ from their defaults.
   std::array<std::filesystem::path, 4> textures;  ///< PNG files for u_texture_1..4; empty: the project's own.
@@ -51,7 +51,7 @@ class SceneView {
   const DrawList& Update(const World& world, const View& view, int width, int height);
   /// The same from copies, for a World that runs on another thread: `cloths` in the scene's order.
   const DrawList& Update(const Scene& scene, std::span<const ClothShape> cloths, const View& view, int width,
-                         int height);
+                         int height, std::span<const Ball> balls = {});
 
  private:
   struct Impl;

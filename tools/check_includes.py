@@ -39,6 +39,7 @@ PUBLIC = {
     "parameters.h": "world",
     "world.h": "world",
     "scene_file.h": "io",
+    "checkpoint_file.h": "io",
     "mesh_file.h": "io",
 }
 

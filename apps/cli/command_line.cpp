@@ -14,8 +14,8 @@
 namespace percale::cli {
 namespace {
 
-constexpr std::string_view kVerbs[] = {"view", "simulate", "shot",  "render", "check",
-                                       "info", "doctor",   "bench", "version"};
+constexpr std::string_view kVerbs[] = {"view",  "simulate", "shot",   "render", "replay",
+                                       "check", "info",     "doctor", "bench",  "version"};
 
 constexpr int kMostFrames = 100'000'000;
 constexpr double kLongestTime = 1e6;  // s
@@ -85,8 +85,12 @@ class Builder {
     app.add_flag("--print-config", options_.printConfig,
                  "Prints every parameter, its value and where that comes from, and ends")
         ->group("Scene");
-    Call(app, "--threads", "Threads; default: as many as there are cores. The result does not depend on it", "N",
-         "Scene", [this](const std::string& text) { options_.threads = Whole("--threads", text, 1, kMostThreads); });
+    Threads(app, "Scene");
+  }
+
+  void Threads(CLI::App& app, const char* group) {
+    Call(app, "--threads", "Threads; default: as many as there are cores. The result does not depend on it", "N", group,
+         [this](const std::string& text) { options_.threads = Whole("--threads", text, 1, kMostThreads); });
   }
 
   void Sphere(CLI::App& app, const char* outputHelp) {
@@ -112,6 +116,11 @@ class Builder {
         ->allow_extra_args(false)
         ->type_name(writes ? "N|FILE" : "N")
         ->group(writes ? "Output" : "Picture");
+  }
+
+  void Log(CLI::App& app) {
+    app.add_option("LOG", positional_, "A session log that percale view --log has written")->group("Log");
+    Threads(app, "Log");
   }
 
   void Length(CLI::App& app, const char* defaultHelp) {
@@ -185,6 +194,10 @@ class Builder {
     app.add_option("--log", options_.log, "Writes what happens in the viewer to a file, one line of JSON per event")
         ->type_name("FILE")
         ->group("Viewer");
+    Call(app, "--history", "Memory for past frames, in MB; default 256, 0 keeps none", "MB", "Viewer",
+         [this](const std::string& text) {
+           options_.historyMegabytes = Number("--history", text, 0, 1e6, "a number of megabytes 0..1e6");
+         });
     app.add_flag("--keys", options_.keys, "Prints the viewer's keys as a table, and ends")->group("Viewer");
   }
 
@@ -319,6 +332,11 @@ void AddVerbs(CLI::App& app, Builder& builder) {
                  builder.options().framesPerSecond = Number("--fps", text, 0.1, 1000, "a number 0.1..1000");
                });
   builder.Progress(render);
+
+  CLI::App& replay = verb(Verb::Replay, "Repeats a session of the viewer, and compares every state to the last bit",
+                          "  percale view --log session.log\n"
+                          "  percale replay session.log\n");
+  builder.Log(replay);
 
   CLI::App& check = verb(Verb::Check, "Reports every problem of scene files",
                          "  percale check scene/*.json\n"

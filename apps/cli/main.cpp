@@ -21,6 +21,8 @@ int RunVerb(const Options& options) {
       return Shot(options);
     case Verb::Render:
       return Render(options);
+    case Verb::Replay:
+      return Replay(options);
     case Verb::Check:
       return Check(options);
     case Verb::Info:

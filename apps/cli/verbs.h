@@ -10,6 +10,7 @@ int View(const Options& options);
 int Simulate(const Options& options);
 int Shot(const Options& options);
 int Render(const Options& options);
+int Replay(const Options& options);
 int Check(const Options& options);
 int Info(const Options& options);
 int Doctor(const Options& options);

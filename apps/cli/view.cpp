@@ -57,6 +57,7 @@ int View(const Options& options) {
   viewer.height = options.height;
   viewer.samples = options.samples.value_or(0);
   viewer.threads = options.threads;
+  viewer.historyBudget = static_cast<std::size_t>(options.historyMegabytes * (1 << 20));
   viewer.log = TextPath(options.log);
   return RunViewer(viewer);
 #else

@@ -15,6 +15,9 @@ using enum SpecialKey;
 constexpr Key Typed(char character) {
   return {.character = character};
 }
+constexpr Key Control(char character, bool shift = false) {
+  return {.character = character, .control = true, .shift = shift};
+}
 constexpr Key Press(SpecialKey special) {
   return {.special = special};
 }
@@ -31,6 +34,38 @@ constexpr Action kActions[] = {
     {.name = "reset", .category = "Simulation", .title = "Reset the cloth", .help = "Cloth back to its start",
      .key = Typed('r'),
      .run = [](Session& session, UiState&) { session.ResetCloth(); return true; }},
+    {.name = "step_back", .category = "Simulation", .title = "One frame back", .help = "One frame back in the history",
+     .key = Typed(','), .repeats = true,
+     .run = [](Session& session, UiState&) { return session.StepBack(); }},
+    {.name = "step_forward", .category = "Simulation", .title = "One frame forth",
+     .help = "One frame forth; after the last of the history, a new one",
+     .key = Typed('.'), .repeats = true,
+     .run = [](Session& session, UiState&) { return session.StepForward(); }},
+    {.name = "loop", .category = "Simulation", .title = "Loop the history",
+     .help = "Show the history again and again, or stop",
+     .key = Typed('l'),
+     .run = [](Session& session, UiState&) { return session.ToggleLoop(); }},
+    {.name = "ball", .category = "Simulation", .title = "Shoot a ball", .help = "Shoot a ball to where the pointer is",
+     .key = Typed('x'),
+     .run = [](Session& session, UiState& state) {
+       session.ShootBall(session.view().camera.position(), state.pointerRay);
+       return true;
+     }},
+    {.name = "gust", .category = "Simulation", .title = "Gust of wind", .help = "A gust of wind away from the eye",
+     .key = Typed('g'),
+     .run = [](Session& session, UiState&) {
+       session.BlowGust(session.view().camera.target() - session.view().camera.position());
+       return true;
+     }},
+
+    {.name = "undo", .category = "Edit", .title = "Undo", .help = "Take back what was changed last",
+     .key = Control('z'), .repeats = true,
+     .enabled = [](const Session& session, const UiState&) { return session.ToUndo() != nullptr; },
+     .run = [](Session& session, UiState&) { return session.Undo(); }},
+    {.name = "redo", .category = "Edit", .title = "Redo", .help = "Change again what was taken back",
+     .key = Control('y'), .otherKey = Control('z', true), .repeats = true,
+     .enabled = [](const Session& session, const UiState&) { return session.ToRedo() != nullptr; },
+     .run = [](Session& session, UiState&) { return session.Redo(); }},
 
     {.name = "reset_camera", .category = "View", .title = "Reset the camera", .help = "Camera back to its start",
      .key = Typed(' '),
@@ -81,6 +116,9 @@ constexpr MouseHelp kMouse[] = {
     {"Left drag", "Turn the view"},
     {"Right drag, Ctrl + left drag", "Shift the view"},
     {"Wheel", "Nearer and farther"},
+    {"Shift + left drag", "Drag cloth, pin, sphere or plane"},
+    {"Shift + click", "Pin the cloth, or let it go"},
+    {"Drag an arrow", "Move a sphere or plane along an axis"},
     {"Drop a scene file", "Open it"},
 };
 

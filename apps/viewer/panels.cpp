@@ -76,6 +76,7 @@ void DrawPanelColumn(Session& session, UiState& state, float width, float height
                                       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                       ImGuiWindowFlags_NoNav;
   if (ImGui::Begin("Panels", nullptr, kFlags)) {
+    NoteWindow(session, state, "panels");
     DrawClothChoice(session, state);
     for (const Panel& panel : kPanels) {
       if (panel.hasContent && !panel.hasContent(session)) continue;

@@ -7,6 +7,7 @@
 namespace percale::viewer {
 
 class Session;
+struct Gizmo;
 struct UiState;
 
 struct Panel {
@@ -38,6 +39,8 @@ void DrawPanelColumn(Session& session, UiState& state, float width, float height
 void DrawMessages(Session& session, UiState& state, float pictureWidth, float height);
 /// One line in the upper left corner of the picture: paused or running, and which key helps.
 void DrawStatusLine(const Session& session, const UiState& state);
+/// The arrows at a sphere or plane that can be moved, that of `axis` brighter.
+void DrawGizmo(const Gizmo& gizmo, int axis, const UiState& state);
 /// Keys and mouse, in the middle of the picture.
 void DrawHelp(const Session& session, UiState& state, float pictureWidth, float height);
 

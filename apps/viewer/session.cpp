@@ -16,6 +16,13 @@ constexpr double kLookPeriod = 0.1;
 /// While running, states are logged this often [s].
 constexpr double kStatePeriod = 0.1;
 
+// A grip holds so much of the cloth's extent around it, but at least so many spacings of its grid.
+constexpr double kGripShare = 0.06, kGripSpacings = 2.5;
+// A ball, for a cloth of 1 m: its radius [m], its share of the cloths' mass, its speed [m/s].
+constexpr double kBallSize = 0.1, kBallMass = 0.1, kBallSpeed = 5;
+// A gust: its speed [m/s], how it pushes a cloth that faces it [m/s^2], how long it blows [s].
+constexpr double kGustSpeed = 8, kGustPush = 30, kGustDuration = 0.8;
+
 /// "/cloth/0/ks", or with kAll "/cloth/ks".
 std::string Path(const Parameter& parameter, int index) {
   std::string path = "/" + std::string(parameter.group);
@@ -43,6 +50,20 @@ std::string DrawingSource(const std::string& file) {
 bool SameGroup(std::string_view group, const Scene& a, const Scene& b) {
   for (const Parameter& parameter : Parameters()) {
     if (parameter.group == group && parameter.get(a, 0) != parameter.get(b, 0)) return false;
+  }
+  return true;
+}
+
+/// Whether two scenes say the same to the simulation: all but look and camera.
+bool SameSettings(const Scene& a, const Scene& b) {
+  for (const ParameterGroup& group : ParameterGroups()) {
+    if (group.count(a) != group.count(b)) return false;
+  }
+  for (const Parameter& parameter : Parameters()) {
+    if (parameter.group == "look" || parameter.group == "camera") continue;
+    for (std::size_t i = 0; i < FindGroup(parameter.group)->count(a); ++i) {
+      if (parameter.get(a, i) != parameter.get(b, i)) return false;
+    }
   }
   return true;
 }
@@ -86,7 +107,7 @@ Session::Session(const ViewerOptions& options, GlDevice& device, SessionLog log,
       sceneFile_(options.sceneFile),
       browsed_(options.sceneFile),
       sceneWatch_(options.sceneFile),
-      simulation_(options.scene, {options.threads, log_.enabled(), std::move(wake)}) {
+      simulation_(options.scene, {options.threads, log_.enabled(), options.historyBudget, std::move(wake)}) {
   view_ = options_.view;
   scene_.look = view_.look;
   cameraMoved_ = !SameView(view_.camera, OrbitCamera::ForScene(scene_));
@@ -101,24 +122,186 @@ bool Session::running() const {
   return lastDone_ == lastSent_ ? snapshot_.running : wantsRunning_;
 }
 
-void Session::LogCommand(LogLine line, std::uint64_t command) {
-  lastSent_ = command;
-  if (log_.enabled()) log_.Write(line.Number("command", static_cast<double>(command)));
+bool Session::looping() const {
+  return lastDone_ == lastSent_ ? snapshot_.looping : wantsLooping_;
+}
+
+std::uint64_t Session::Send(Command command) {
+  LogLine line = DescribeCommand(command);
+  return Send(std::move(command), std::move(line));
+}
+
+std::uint64_t Session::Send(Command command, LogLine line) {
+  lastSent_ = simulation_.Send(std::move(command));
+  if (log_.enabled()) log_.Write(line.Number("command", static_cast<double>(lastSent_)));
+  return lastSent_;
+}
+
+void Session::Run(bool running) {
+  wantsRunning_ = running;
+  wantsLooping_ = false;
+  Send({.kind = running ? Command::Kind::Run : Command::Kind::Pause});
 }
 
 void Session::TogglePause() {
-  wantsRunning_ = !running();
-  LogCommand(LogLine("run").Flag("running", wantsRunning_), simulation_.SetRunning(wantsRunning_));
+  Run(!running() && !looping());
 }
 
 bool Session::StepOneFrame() {
-  if (running()) return false;
-  LogCommand(LogLine("step").Number("frames", 1), simulation_.StepFrames(1));
+  if (running() || looping()) return false;
+  Send({.kind = Command::Kind::Step, .frames = 1});
   return true;
 }
 
 void Session::ResetCloth() {
-  LogCommand(LogLine("reset"), simulation_.Reset());
+  const std::uint64_t command = Send({.kind = Command::Kind::Reset, .undoable = true});
+  undo_.Push({.label = "Reset", .command = command});
+}
+
+bool Session::Seek(int frame) {
+  const HistoryInfo& history = snapshot_.history;
+  if (frame < history.firstFrame || frame > history.lastFrame) return false;
+  wantsRunning_ = wantsLooping_ = false;
+  soughtFrame_ = frame;
+  sought_ = Send({.kind = Command::Kind::Seek, .frame = frame});
+  return true;
+}
+
+/// The frame that is shown, or will be when what was sent is done.
+int Session::Frame() const {
+  return sought_ > lastDone_ && sought_ == lastSent_ ? soughtFrame_ : snapshot_.report.frame;
+}
+
+bool Session::StepBack() {
+  return Seek(Frame() - 1);
+}
+
+bool Session::StepForward() {
+  return Seek(Frame() + 1) || StepOneFrame();
+}
+
+bool Session::ToggleLoop() {
+  if (looping()) {
+    Run(false);
+    return true;
+  }
+  if (snapshot_.history.budget == 0) return false;
+  wantsRunning_ = false;
+  wantsLooping_ = true;
+  Send({.kind = Command::Kind::Loop});
+  return true;
+}
+
+void Session::SetHistoryBudget(std::size_t bytes) {
+  Send({.kind = Command::Kind::Budget, .budget = bytes});
+}
+
+// Undo.
+
+bool Session::Undo() {
+  const Change* change = undo_.ToUndo();
+  if (!change) return false;
+  if (log_.enabled()) log_.Write(LogLine("undo").Text("label", change->label));
+  undo_.Undone(Travel(*change, change->before));
+  return true;
+}
+
+bool Session::Redo() {
+  const Change* change = undo_.ToRedo();
+  if (!change) return false;
+  if (log_.enabled()) log_.Write(LogLine("redo").Text("label", change->label));
+  undo_.Redone(Travel(*change, change->after));
+  return true;
+}
+
+std::uint64_t Session::Travel(const Change& change, const Scene& settings) {
+  if (change.settings) {
+    scene_ = settings;
+    AdoptLook();
+    CheckSettings();
+  }
+  if (change.command != 0) {
+    wantsRunning_ = wantsLooping_ = false;
+    return Send({.kind = Command::Kind::Restore, .undoable = true, .before = change.command});
+  }
+  SendSettings(LogLine("settings"));
+  return 0;
+}
+
+// The hand.
+
+void Session::Grip(int cloth, int vertex) {
+  const ClothSettings& sheet = scene_.cloths[static_cast<std::size_t>(cloth)];
+  const double spacing = std::max(sheet.width / (sheet.numWidthPoints - 1), sheet.height / (sheet.numHeightPoints - 1));
+  Handle handle{.cloth = cloth, .vertex = vertex};
+  handle.target = snapshot_.cloths[static_cast<std::size_t>(cloth)].positions[static_cast<std::size_t>(vertex)];
+  handle.radius = std::max(kGripShare * std::max(sheet.width, sheet.height), kGripSpacings * spacing);
+  handles_ = {handle};
+  undo_.Push({.label = "Drag", .command = SendHandles(true)});
+}
+
+void Session::MoveGrip(const Vec3& target) {
+  if (handles_.empty() || handles_[0].target == target) return;
+  handles_[0].target = target;
+  if (Check(handles_[0])) return;  // beyond the world
+  SendHandles(false);
+}
+
+void Session::LetGo() {
+  if (handles_.empty()) return;
+  handles_.clear();
+  Send({.kind = Command::Kind::Handles});
+}
+
+/// While time stands the cloth is put where the hand is, else it is drawn there.
+std::uint64_t Session::SendHandles(bool undoable) {
+  const Command::Kind kind = running() ? Command::Kind::Handles : Command::Kind::Place;
+  return Send({.kind = kind, .undoable = undoable, .handles = handles_});
+}
+
+bool Session::IsPinned(int cloth, int vertex) const {
+  const ClothSettings& sheet = scene_.cloths[static_cast<std::size_t>(cloth)];
+  const GridPoint point{vertex % sheet.numWidthPoints, vertex / sheet.numWidthPoints};
+  return std::find(sheet.pinned.begin(), sheet.pinned.end(), point) != sheet.pinned.end();
+}
+
+void Session::TogglePin(int cloth, int vertex) {
+  const ClothSettings& sheet = scene_.cloths[static_cast<std::size_t>(cloth)];
+  const GridPoint point{vertex % sheet.numWidthPoints, vertex / sheet.numWidthPoints};
+  std::vector<GridPoint> pinned = sheet.pinned;
+  const bool isPinned = IsPinned(cloth, vertex);
+  if (isPinned)
+    pinned.erase(std::remove(pinned.begin(), pinned.end(), point), pinned.end());
+  else
+    pinned.push_back(point);
+  SetParameter(*FindParameter("cloth", "pinned"), cloth, pinned);
+}
+
+void Session::ShootBall(const Vec3& from, const Vec3& direction) {
+  double extent = 0, mass = 0;
+  for (const ClothSettings& cloth : scene_.cloths) {
+    extent = std::max({extent, cloth.width, cloth.height});
+    mass += cloth.width * cloth.height * cloth.density;
+  }
+  Ball ball;
+  ball.position = from;
+  ball.radius = kBallSize * extent;
+  ball.mass = mass > 0 ? kBallMass * mass : 1;
+  ball.velocity = UnitOr(direction, {0, 0, -1}) * (kBallSpeed * std::sqrt(extent));
+  if (Check(ball)) return;
+  const std::uint64_t command = Send({.kind = Command::Kind::Ball, .undoable = true, .ball = ball});
+  undo_.Push({.label = "Ball", .command = command});
+}
+
+void Session::BlowGust(const Vec3& direction) {
+  double density = 0;
+  for (const ClothSettings& cloth : scene_.cloths) density = std::max(density, cloth.density);
+  Gust gust;
+  gust.velocity = UnitOr(direction, {0, 0, -1}) * kGustSpeed;
+  gust.drag = std::max({scene_.wind.drag, kGustPush * density / kGustSpeed, 0.01});
+  gust.duration = kGustDuration;
+  const std::uint64_t command = Send({.kind = Command::Kind::Gust, .undoable = true, .gust = gust});
+  undo_.Push({.label = "Gust of wind", .command = command});
 }
 
 // Settings.
@@ -143,19 +326,30 @@ bool Session::SetParameter(const Parameter& parameter, int index, const Value& v
     for (const Diagnostic& d : CheckScene(changed)) {
       if (d.severity == Severity::Error) return refuse(d.message);
     }
+    const std::string path = Path(parameter, index);
+    const bool merges = undo_.Merges(path);
+    Change change{.label = std::string(parameter.label), .path = path, .before = scene_, .after = changed};
+    change.settings = true;
     scene_ = std::move(changed);
     const bool isView = parameter.group == "look" || parameter.group == "camera";
+    const bool undoable = parameter.effect == Effect::Rebuild && !merges;
     std::uint64_t command = 0;
     if (isView) {
       AdoptLook();
     } else {
-      command = lastSent_ = simulation_.Apply(scene_);
+      command = lastSent_ = lastApply_ = simulation_.Send(ApplyCommand(undoable));
       CheckSettings();
     }
+    if (undoable) change.command = command;
+    if (merges)
+      undo_.Extend(scene_);
+    else
+      undo_.Push(std::move(change));
     for (const int i : set) {
       if (!log_.enabled()) break;
       LogLine line("set");
       line.Text("path", Path(parameter, i)).Json("value", FormatValue(value));
+      if (undoable) line.Flag("undoable", true);
       if (command) line.Number("command", static_cast<double>(command));
       log_.Write(line);
     }
@@ -166,6 +360,25 @@ bool Session::SetParameter(const Parameter& parameter, int index, const Value& v
 
 void Session::Refuse(const Parameter& parameter, int index, const std::string& why) {
   messages_.Set(InputSource(parameter, index), {Refusal(parameter.label, why)});
+}
+
+Command Session::ApplyCommand(bool undoable) const {
+  return {.kind = Command::Kind::Apply, .undoable = undoable, .scene = std::make_unique<Scene>(scene_)};
+}
+
+std::uint64_t Session::SendSettings(LogLine line) {
+  line.Config(scene_);
+  return lastApply_ = Send(ApplyCommand(false), std::move(line));
+}
+
+/// The settings that a state has brought along. What is seen stays as the user wants it.
+void Session::AdoptSettings(Scene settings) {
+  settings.look = scene_.look;
+  settings.camera = scene_.camera;
+  if (SameSettings(settings, scene_)) return;
+  scene_ = std::move(settings);
+  if (log_.enabled()) log_.Write(LogLine("settings").Config(scene_));
+  CheckSettings();
 }
 
 /// Warnings about the settings as they are now. Those that a slider has left behind are not kept.
@@ -321,7 +534,7 @@ void Session::ReloadScene() {
   scene_ = std::move(loaded);
   if (sameLook) scene_.look = look;
   AdoptLook();
-  LogCommand(LogLine("reload").Text("what", "scene").Text("file", PathText(sceneFile_)), simulation_.Apply(scene_));
+  SendSettings(LogLine("reload").Text("what", "scene").Text("file", PathText(sceneFile_)));
   if (!cameraMoved_ || !sameCamera) ResetCamera();
   CheckSettings();
 }
@@ -367,11 +580,11 @@ bool Session::OpenScene(const std::filesystem::path& file) {
   if (!statesShader) scene_.look.shader = shader;
   AdoptLook();
   messages_.Set("scene", {});
-  if (log_.enabled()) log_.Write(LogLine("open").Text("scene", PathText(file)));
-  wantsRunning_ = false;
-  LogCommand(LogLine("run").Flag("running", false), simulation_.SetRunning(false));
-  simulation_.Apply(scene_);
-  ResetCloth();
+  Run(false);
+  SendSettings(LogLine("open").Text("scene", PathText(file)));
+  Send({.kind = Command::Kind::Reset});
+  handles_.clear();
+  undo_.Clear();
   ResetCamera();
   CheckSettings();
   return true;
@@ -445,12 +658,21 @@ bool Session::Update(double now) {
 void Session::ReadSnapshot(double now) {
   for (const Executed& done : snapshot_.executed) {
     lastDone_ = std::max(lastDone_, done.command);
-    if (!log_.enabled()) continue;
-    log_.Write(LogLine("done")
-                   .Number("command", static_cast<double>(done.command))
-                   .Number("frame", done.frame)
-                   .Hash("hash", done.hash)
-                   .Flag("kept", done.stateKept));
+    if (log_.enabled()) {
+      log_.Write(LogLine("done")
+                     .Number("command", static_cast<double>(done.command))
+                     .Number("at", done.at)
+                     .Number("frame", done.frame)
+                     .Hash("hash", done.hash)
+                     .Flag("kept", done.stateKept));
+    }
+    if (done.scene && done.command > lastApply_) AdoptSettings(*done.scene);
+    if (!done.failure.empty()) {
+      messages_.Set("history", {MakeError(done.failure)});
+      SendSettings(LogLine("settings"));  // Those that the panels show.
+    } else if (done.state || done.scene) {
+      messages_.Set("history", {});
+    }
   }
   Diagnostics problems;
   if (const auto& divergence = snapshot_.report.divergence) {

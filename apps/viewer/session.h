@@ -17,6 +17,7 @@
 #include "apps/viewer/messages.h"
 #include "apps/viewer/session_log.h"
 #include "apps/viewer/simulation.h"
+#include "apps/viewer/undo.h"
 #include "apps/viewer/viewer.h"
 #include "percale/parameters.h"
 #include "render/gl_device.h"
@@ -45,6 +46,34 @@ class Session {
   bool StepOneFrame();
   void ResetCloth();
   bool running() const;
+  bool looping() const;
+
+  // The past. Each returns whether there was something to do.
+  bool Seek(int frame);  ///< To a frame of the history, paused.
+  bool StepBack();       ///< To the frame before, paused.
+  bool StepForward();    ///< To the frame after, paused; after the last, one new frame.
+  bool ToggleLoop();     ///< Shows the history again and again, or stops.
+  void SetHistoryBudget(std::size_t bytes);
+  /// While the user holds a control, its changes count as one.
+  void HoldChanges(bool held) { undo_.Hold(held); }
+  bool Undo();
+  bool Redo();
+  const Change* ToUndo() const { return undo_.ToUndo(); }  ///< What Undo would take back, or null.
+  const Change* ToRedo() const { return undo_.ToRedo(); }
+
+  // The hand.
+  /// Grips the cloth at a vertex, which MoveGrip then draws along. A grip on a pin carries the pin.
+  void Grip(int cloth, int vertex);
+  void MoveGrip(const Vec3& target);
+  void LetGo();
+  bool gripping() const { return !handles_.empty(); }
+  /// Pins a vertex where it is, or lets it go.
+  void TogglePin(int cloth, int vertex);
+  bool IsPinned(int cloth, int vertex) const;
+  /// A ball from a point in a direction; its size, mass and speed suit the scene.
+  void ShootBall(const Vec3& from, const Vec3& direction);
+  /// A second of wind in a direction, strong enough for the cloth's weight.
+  void BlowGust(const Vec3& direction);
 
   // Settings.
   const Scene& scene() const { return scene_; }  ///< As it is set now.
@@ -98,7 +127,19 @@ class Session {
   void RefreshShaderMessages();
   void ReadSnapshot(double now);
   void LogState(double now);
-  void LogCommand(LogLine line, std::uint64_t command);
+  /// Sends a command, and logs it in a line of its own.
+  std::uint64_t Send(Command command);
+  /// The same with another line.
+  std::uint64_t Send(Command command, LogLine line);
+  /// Sends the settings as they are; the line gets them too.
+  std::uint64_t SendSettings(LogLine line);
+  Command ApplyCommand(bool undoable) const;
+  std::uint64_t SendHandles(bool undoable);
+  void AdoptSettings(Scene settings);
+  void Run(bool running);
+  int Frame() const;
+  /// Goes to the other side of a change; returns the command whose state before it leads back, or 0.
+  std::uint64_t Travel(const Change& change, const Scene& settings);
 
   const ViewerOptions options_;
   GlDevice& device_;
@@ -115,9 +156,13 @@ class Session {
   bool cameraMoved_ = false;  // By the user.
   bool cameraUnlogged_ = false;
   Snapshot snapshot_;
+  UndoStack undo_;
+  std::vector<Handle> handles_;
   Simulation simulation_;
-  bool wantsRunning_ = false;
-  std::uint64_t lastSent_ = 0, lastDone_ = 0;
+  bool wantsRunning_ = false, wantsLooping_ = false;
+  std::uint64_t lastSent_ = 0, lastDone_ = 0, lastApply_ = 0;
+  std::uint64_t sought_ = 0;  // The last command to seek, and where to.
+  int soughtFrame_ = 0;
   double nextLook_ = 0;    // At the files [s].
   double lastState_ = -1;  // Logged [s].
   bool stateUnlogged_ = false;

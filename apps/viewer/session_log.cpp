@@ -8,6 +8,7 @@
 
 #include "core/text.h"
 #include "io/atomic_file.h"
+#include "percale/scene_file.h"
 
 namespace percale::viewer {
 
@@ -39,6 +40,67 @@ LogLine& LogLine::Hash(std::string_view key, std::uint64_t hash) {
 }
 LogLine& LogLine::Vector(std::string_view key, const Vec3& v) {
   return Json(key, "[" + FormatNumber(v.x) + "," + FormatNumber(v.y) + "," + FormatNumber(v.z) + "]");
+}
+
+LogLine& LogLine::Config(const Scene& scene) {
+  return Text("config", FormatScene(scene));
+}
+
+LogLine DescribeCommand(const Command& command) {
+  using enum Command::Kind;
+  const auto line = [&] {
+    switch (command.kind) {
+      case Run:
+        return LogLine("run").Flag("running", true);
+      case Pause:
+        return LogLine("run").Flag("running", false);
+      case Loop:
+        return LogLine("loop");
+      case Step:
+        return LogLine("step").Number("frames", command.frames);
+      case Reset:
+        return LogLine("reset");
+      case Apply:
+        return LogLine("settings");
+      case Handles:
+      case Place: {
+        std::string list;
+        for (const Handle& handle : command.handles) {
+          LogLine one("handle");
+          one.Number("cloth", handle.cloth).Number("vertex", handle.vertex).Vector("target", handle.target);
+          one.Number("radius", handle.radius).Number("frequency", handle.frequency);
+          list += (list.empty() ? "{" : ",{") + one.text().substr(1) + "}";
+        }
+        return LogLine(command.kind == Handles ? "handles" : "place").Json("handles", "[" + list + "]");
+      }
+      case Ball:
+        return LogLine("ball")
+            .Vector("position", command.ball.position)
+            .Vector("velocity", command.ball.velocity)
+            .Number("radius", command.ball.radius)
+            .Number("mass", command.ball.mass);
+      case Gust:
+        return LogLine("gust")
+            .Vector("velocity", command.gust.velocity)
+            .Number("drag", command.gust.drag)
+            .Number("start", command.gust.start)
+            .Number("duration", command.gust.duration);
+      case Seek:
+        return LogLine("seek").Number("frame", command.frame);
+      case Restore:
+        return LogLine("restore").Number("before", static_cast<double>(command.before));
+      case Load:
+        return LogLine("load");
+      case Save:
+        return LogLine("save");
+      case Budget:
+        break;
+    }
+    return LogLine("budget").Number("bytes", static_cast<double>(command.budget));
+  };
+  LogLine text = line();
+  if (command.undoable) text.Flag("undoable", true);
+  return text;
 }
 
 Result<SessionLog> SessionLog::Open(const std::filesystem::path& file) {

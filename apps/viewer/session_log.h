@@ -4,20 +4,34 @@
 /// or a later replay can follow what the user did and what came of it.
 ///
 /// Every line has "t", the wall-clock time since the start [s], and "event". By event:
-///   start    scene, shader, root, width, height (window), samples, renderer, software, frame, hash
+///   start    log (the version of this format), version (of the program), scene (its file), config (the
+///            text of the scene itself), shader, root, width, height (window), samples, renderer, software,
+///            history (its budget [bytes]), frame, hash
 ///   action   name, key: a key of the table in actions.cpp was pressed
 ///   ignored  name: the action had no effect, as a single frame while running
 ///   run      running, command: paused or resumed
+///   loop     command: the history is shown again and again
 ///   step     frames, command
 ///   reset    command
+///   settings config (a scene), command: all settings at once
+///   handles  handles (grips on the cloth, each with cloth, vertex, target [m], radius [m], frequency
+///            [Hz]), command: they take the place of those there were
+///   place    handles, command: the cloth is put there, while time stands
+///   ball     position [m], velocity [m/s], radius [m], mass [kg], command
+///   gust     velocity [m/s], drag [kg/(m^2 s)], start [s from now], duration [s], command
+///   seek     frame, command: to that frame of the history
+///   restore  before, command: to the state before the command of that number
+///   load     file, hash, command: to a checkpoint
+///   budget   bytes, command: of history
+///   undo     label, and redo: what the lines after it do
 ///   set      path ("/cloth/0/ks"), value, command (absent where the simulation has no part in it)
 ///   uniform  shader, name, value (three numbers)
 ///   shader   name: the shader that is drawn with from now on
 ///   wireframe visible: the springs are drawn over the shader, or no longer
 ///   camera   azimuth, elevation [degree], distance [m], target [m]
-///   done     command, frame, hash, kept: a command was carried out after that frame; kept: the
-///            cloths are where they were. A change of settings that was overtaken by a newer one has
-///            no line.
+///   done     command, at, frame, hash, kept: a command was carried out after frame `at` and left `frame`;
+///            kept: the cloths are where they were. Of changes of settings, of handles and of seeking, one that
+///            was overtaken by a newer one has no line.
 ///   state    frame, step, time [s], running, hash, lowest (y of the lowest point) [m], stretch,
 ///            energy [J], rest, ms (of the last frame), drawn (pictures so far). After each command,
 ///            and ten times per second while running.
@@ -33,7 +47,8 @@
 ///            "cloth.ks" and "cloth.1.ks" are sliders, "cloth.ks box" the box to type in beside it,
 ///            "look.shader" a drop-down, "look.shader/Phong" an entry of its list.
 ///   exit     code: the last line
-/// Hashes are 16 hexadecimal digits. Numbers of commands count from 1 (see simulation.h).
+/// Hashes are 16 hexadecimal digits. Numbers of commands count from 1 (see simulation.h). A command with
+/// "undoable": true keeps the state before it, for `restore`.
 
 #include <chrono>
 #include <cstdint>
@@ -42,10 +57,15 @@
 #include <string>
 #include <string_view>
 
+#include "apps/viewer/timeline.h"
 #include "percale/diagnostic.h"
+#include "percale/scene.h"
 #include "percale/vec3.h"
 
 namespace percale::viewer {
+
+/// Of the format described here.
+inline constexpr int kLogVersion = 2;
 
 /// One line under construction.
 class LogLine {
@@ -56,6 +76,7 @@ class LogLine {
   LogLine& Flag(std::string_view key, bool flag);
   LogLine& Hash(std::string_view key, std::uint64_t hash);
   LogLine& Vector(std::string_view key, const Vec3& v);
+  LogLine& Config(const Scene& scene);  ///< All settings, as the text of a scene file.
   /// `json` as it is.
   LogLine& Json(std::string_view key, std::string_view json);
 
@@ -64,6 +85,9 @@ class LogLine {
  private:
   std::string text_;
 };
+
+/// The line of a command, without its number: all that a replay needs, but for the settings of Apply.
+LogLine DescribeCommand(const Command& command);
 
 class SessionLog {
  public:

@@ -31,8 +31,8 @@ std::vector<T> Copy(std::span<const T> span) {
 }  // namespace
 
 Simulation::Simulation(Scene scene, SimulationOptions options)
-    : options_(std::move(options)), world_(std::move(scene), WorldOptions{.threads = options_.threads}) {
-  scene_ = std::make_shared<const Scene>(world_.scene());
+    : options_(std::move(options)),
+      timeline_(std::move(scene), {options_.threads, options_.hashes, options_.historyBudget}) {
   CopyTopologies();
   Publish();
   thread_ = std::thread([this] { Loop(); });
@@ -47,39 +47,16 @@ Simulation::~Simulation() {
   thread_.join();
 }
 
-std::uint64_t Simulation::SetRunning(bool running) {
-  Command command;
-  command.kind = running ? Command::Kind::Run : Command::Kind::Pause;
-  return Send(std::move(command));
-}
-
-std::uint64_t Simulation::StepFrames(int frames) {
-  Command command;
-  command.kind = Command::Kind::Step;
-  command.frames = frames;
-  return Send(std::move(command));
-}
-
-std::uint64_t Simulation::Reset() {
-  Command command;
-  command.kind = Command::Kind::Reset;
-  return Send(std::move(command));
-}
-
-std::uint64_t Simulation::Apply(Scene scene) {
-  Command command;
-  command.kind = Command::Kind::Apply;
-  command.scene = std::make_unique<Scene>(std::move(scene));
-  return Send(std::move(command));
-}
-
 std::uint64_t Simulation::Send(Command command) {
+  using enum Command::Kind;
   std::uint64_t number = 0;
   {
     const std::lock_guard lock(mutex_);
     number = command.number = ++lastNumber_;
-    const bool replaces =
-        command.kind == Command::Kind::Apply && !commands_.empty() && commands_.back().kind == Command::Kind::Apply;
+    const bool mayReplace =
+        command.kind == Apply || command.kind == Handles || command.kind == Place || command.kind == Seek;
+    const bool replaces = mayReplace && !command.undoable && !commands_.empty() &&
+                          commands_.back().kind == command.kind && !commands_.back().undoable;
     if (replaces)
       commands_.back() = std::move(command);
     else
@@ -127,7 +104,7 @@ void Simulation::LoopOrThrow() {
     {
       std::unique_lock lock(mutex_);
       const auto awake = [this] { return stop_ || !commands_.empty(); };
-      if (running_)
+      if (mode_ != Mode::Paused)
         wake_.wait_until(lock, nextFrame_, awake);
       else
         wake_.wait(lock, awake);
@@ -139,71 +116,71 @@ void Simulation::LoopOrThrow() {
       }
     }
     if (hasCommand) {
-      Execute(command);
+      Execute(std::move(command));
       Publish();
       continue;
     }
     const Clock::time_point now = Clock::now();
-    if (!running_ || now < nextFrame_) continue;
+    if (mode_ == Mode::Paused || now < nextFrame_) continue;
     const auto period = std::chrono::duration_cast<Clock::duration>(
-        std::chrono::duration<double>(1.0 / std::max(1, scene_->simulation.framesPerSecond)));
+        std::chrono::duration<double>(1.0 / std::max(1, timeline_.world().scene().simulation.framesPerSecond)));
     nextFrame_ = std::max(nextFrame_ + period, now - kCatchUpFrames * period);
-    StepOneFrame();
+    ShowNextFrame();
     Publish();
   }
 }
 
-void Simulation::Execute(Command& command) {
-  Executed done{.command = command.number};
-  switch (command.kind) {
-    case Command::Kind::Run:
-      running_ = !world_.report().divergence;
-      nextFrame_ = rateSince_ = Clock::now();
-      framesSince_ = 0;
-      break;
-    case Command::Kind::Pause:
-      running_ = false;
-      framesPerSecond_ = 0;
-      break;
-    case Command::Kind::Step:
-      for (int frame = 0; frame < command.frames; ++frame) StepOneFrame();
-      break;
-    case Command::Kind::Reset:
-      world_.Reset();
-      frameSeconds_ = 0;
-      done.stateKept = false;
-      break;
-    case Command::Kind::Apply:
-      done.stateKept = world_.Apply(std::move(*command.scene));
-      scene_ = std::make_shared<const Scene>(world_.scene());
-      CopyTopologies();
-      break;
+void Simulation::Execute(Command command) {
+  using enum Command::Kind;
+  const Command::Kind kind = command.kind;
+  const bool changesFrame = kind == Reset || kind == Seek || kind == Restore || kind == Load;
+  if (kind == Run)
+    mode_ = timeline_.world().report().divergence ? Mode::Paused : Mode::Running;
+  else if (Loops(kind, mode_ == Mode::Looping))
+    mode_ = Mode::Looping;
+  else if (kind == Pause || kind == Seek || kind == Restore || kind == Load)
+    mode_ = Mode::Paused;
+  if (kind == Run || kind == Loop || kind == Pause) {
+    nextFrame_ = rateSince_ = Clock::now();
+    framesSince_ = 0;
   }
-  done.frame = world_.report().frame;
-  done.hash = options_.hashes ? world_.StateHash() : 0;
-  executed_.push_back(done);
+  const int frames = command.frames;
+  const auto begin = Clock::now();
+  executed_.push_back(timeline_.Execute(std::move(command)));
+  if (kind == Step) frameSeconds_ = std::chrono::duration<double>(Clock::now() - begin).count() / frames;
+  if (changesFrame) frameSeconds_ = 0;
+  if (mode_ == Mode::Paused) framesPerSecond_ = 0;
+  CopyTopologies();
 }
 
-void Simulation::StepOneFrame() {
+void Simulation::ShowNextFrame() {
   const Clock::time_point begin = Clock::now();
-  world_.Step();
-  const Clock::time_point end = Clock::now();
-  frameSeconds_ = std::chrono::duration<double>(end - begin).count();
-  if (world_.report().divergence) running_ = false;
-  if (!running_) return;
+  const bool shown = mode_ == Mode::Looping ? timeline_.LoopFrame() : timeline_.StepFrame();
+  if (mode_ == Mode::Running) frameSeconds_ = std::chrono::duration<double>(Clock::now() - begin).count();
+  if (mode_ == Mode::Looping) CopyTopologies();
+  if (!shown) mode_ = Mode::Paused;
+  CountFrame();
+}
+
+void Simulation::CountFrame() {
+  if (mode_ == Mode::Paused) return;
+  const Clock::time_point now = Clock::now();
   ++framesSince_;
-  const double period = std::chrono::duration<double>(end - rateSince_).count();
+  const double period = std::chrono::duration<double>(now - rateSince_).count();
   if (period < kRatePeriod) return;
   framesPerSecond_ = framesSince_ / period;
-  rateSince_ = end;
+  rateSince_ = now;
   framesSince_ = 0;
 }
 
 void Simulation::CopyTopologies() {
-  topologies_.resize(static_cast<std::size_t>(world_.ClothCount()));
-  for (int c = 0; c < world_.ClothCount(); ++c) {
+  const World& world = timeline_.world();
+  if (world.sharedScene() == topologyScene_) return;
+  topologyScene_ = world.sharedScene();
+  topologies_.resize(static_cast<std::size_t>(world.ClothCount()));
+  for (int c = 0; c < world.ClothCount(); ++c) {
     std::shared_ptr<const ClothTopology>& old = topologies_[static_cast<std::size_t>(c)];
-    const ClothView cloth = world_.Cloth(c);
+    const ClothView cloth = world.Cloth(c);
     if (old && SameEdges(old->springs, cloth.springs()) && SameTriangles(old->triangles, cloth.triangles()) &&
         std::equal(old->uv.begin(), old->uv.end(), cloth.uv().begin(), cloth.uv().end())) {
       continue;
@@ -215,18 +192,22 @@ void Simulation::CopyTopologies() {
 
 /// Makes the state of the World the newest snapshot.
 void Simulation::Publish() {
-  back_.scene = scene_;
+  const World& world = timeline_.world();
+  back_.scene = world.sharedScene();
   back_.cloths.resize(topologies_.size());
   for (std::size_t c = 0; c < topologies_.size(); ++c) {
-    const std::span<const Vec3> positions = world_.Cloth(static_cast<int>(c)).positions();
+    const std::span<const Vec3> positions = world.Cloth(static_cast<int>(c)).positions();
     back_.cloths[c].positions.assign(positions.begin(), positions.end());
     back_.cloths[c].topology = topologies_[c];
   }
-  back_.report = world_.report();
-  back_.running = running_;
+  back_.balls.assign(world.balls().begin(), world.balls().end());
+  back_.report = world.report();
+  back_.history = timeline_.history().info();
+  back_.running = mode_ == Mode::Running;
+  back_.looping = mode_ == Mode::Looping;
   back_.frameSeconds = frameSeconds_;
   back_.framesPerSecond = framesPerSecond_;
-  back_.hash = options_.hashes ? world_.StateHash() : 0;
+  back_.hash = timeline_.Hash();
   {
     const std::lock_guard lock(mutex_);
     // What was carried out before a snapshot that nobody took is told with this one.

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A World on a thread of its own. The window sends commands and takes copies of the newest state;
+/// A timeline on a thread of its own. The window sends commands and takes copies of the newest state;
 /// neither waits for the other, so a cloth of any size leaves the window answering.
 
 #include <chrono>
@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "apps/viewer/timeline.h"
 #include "percale/world.h"
 
 namespace percale::viewer {
@@ -30,20 +31,15 @@ struct ClothCopy {
   std::shared_ptr<const ClothTopology> topology;
 };
 
-/// A command that has been carried out.
-struct Executed {
-  std::uint64_t command = 0;  ///< Its number.
-  int frame = 0;              ///< The frame after which it acted; for steps, the frame that they ended with.
-  std::uint64_t hash = 0;     ///< World::StateHash afterwards; 0 unless hashes were asked for.
-  bool stateKept = true;      ///< Whether the cloths are where they were: false after a reset or a rebuild.
-};
-
 /// A copy of everything that the window shows of a World, of one moment.
 struct Snapshot {
   std::shared_ptr<const Scene> scene;
   std::vector<ClothCopy> cloths;  ///< In the scene's order.
+  std::vector<Ball> balls;
   StepReport report;
-  bool running = false;
+  HistoryInfo history;
+  bool running = false;            ///< In real time.
+  bool looping = false;            ///< Through the history.
   double frameSeconds = 0;         ///< Wall-clock time of the last frame [s]; 0 before the first.
   double framesPerSecond = 0;      ///< Simulated in the last half second of running; 0 while paused.
   std::uint64_t hash = 0;          ///< World::StateHash; 0 unless hashes were asked for.
@@ -51,8 +47,9 @@ struct Snapshot {
 };
 
 struct SimulationOptions {
-  int threads = 0;      ///< Of the World; 0: as many as the machine has cores.
-  bool hashes = false;  ///< Fingerprint every state, for a log.
+  int threads = 0;                ///< Of the World; 0: as many as the machine has cores.
+  bool hashes = false;            ///< Fingerprint every state, for a log.
+  std::size_t historyBudget = 0;  ///< Memory for past frames [bytes]; 0: none are kept.
   /// Called on the simulation's thread when there is a new snapshot. It must not call back.
   std::function<void()> onSnapshot = {};
 };
@@ -66,17 +63,10 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  // Commands are carried out in order, between two frames. Each returns its number, from 1 on.
-
-  /// Runs in real time, simulation.frames_per_second frames each second, or as fast as it can where
-  /// that is slower; or pauses.
-  std::uint64_t SetRunning(bool running);
-  /// Runs `frames` >= 1 frames; paused or not.
-  std::uint64_t StepFrames(int frames);
-  /// Back to the start, with the settings as they are.
-  std::uint64_t Reset();
-  /// Takes changed settings as World::Apply does. Of several that wait, the newest alone is carried out.
-  std::uint64_t Apply(Scene scene);
+  /// Appends a command to those that wait; they are carried out in order, between two frames. Returns
+  /// its number, from 1 on. Of several Apply, Handles or Seek in a row that wait, the newest alone is carried
+  /// out, unless it is to be undoable.
+  std::uint64_t Send(Command command);
 
   /// Puts the newest state into `snapshot`, whose memory is used again. Returns false, and leaves it
   /// alone, when there is none since the last call.
@@ -86,28 +76,22 @@ class Simulation {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Command {
-    enum class Kind { Run, Pause, Step, Reset, Apply } kind = Kind::Pause;
-    std::uint64_t number = 0;
-    int frames = 0;
-    std::unique_ptr<Scene> scene;
-  };
-
-  std::uint64_t Send(Command command);
+  enum class Mode { Paused, Running, Looping };
   void Loop();
   void LoopOrThrow();
-  void Execute(Command& command);
-  void StepOneFrame();
+  void Execute(Command command);
+  void ShowNextFrame();
+  void CountFrame();
   void Publish();
   void CopyTopologies();
 
   // The simulation's thread only, once it runs.
   SimulationOptions options_;
-  World world_;
-  std::shared_ptr<const Scene> scene_;
+  Timeline timeline_;
   std::vector<std::shared_ptr<const ClothTopology>> topologies_;
+  std::shared_ptr<const Scene> topologyScene_;  // They are those of its cloths.
   Snapshot back_;
-  bool running_ = false;
+  Mode mode_ = Mode::Paused;
   double frameSeconds_ = 0;
   double framesPerSecond_ = 0;
   std::vector<Executed> executed_;

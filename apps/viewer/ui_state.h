@@ -24,6 +24,7 @@ struct UiState {
   bool helpVisible = false;
   bool quit = false;
   int cloth = Session::kAll;  ///< Whose settings the panels show and set.
+  Vec3 pointerRay{0, 0, -1};  ///< From the eye to what the pointer is over, of length 1.
   float scale = 1;            ///< Of text and controls: 1 on a display of ordinary density.
 
   /// The number that is being typed: the id of its box, and the text so far.

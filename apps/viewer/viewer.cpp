@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "apps/viewer/actions.h"
+#include "apps/viewer/hand.h"
 #include "apps/viewer/panels.h"
 #include "apps/viewer/session.h"
 #include "apps/viewer/session_log.h"
@@ -46,45 +47,6 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Turns what the user does in the picture into changes of the camera.
-class Hand {
- public:
-  /// `inPicture`: the pointer is over the picture, not over a panel.
-  void Take(const InputEvent& event, bool inPicture, int width, int height, Session& session) {
-    switch (event.kind) {
-      case InputEvent::Kind::Press:
-        if (!inPicture || grip_) return;
-        grip_ = event.button;
-        pans_ = event.button == InputEvent::Button::Right || event.control;
-        x_ = event.x;
-        y_ = event.y;
-        return;
-      case InputEvent::Kind::Release:
-        if (grip_ == event.button) grip_.reset();
-        return;
-      case InputEvent::Kind::Move:
-        if (!grip_ || (event.x == x_ && event.y == y_)) return;
-        if (pans_)
-          session.Pan(event.x - x_, event.y - y_, width, height);
-        else
-          session.Orbit(event.x - x_, event.y - y_, width, height);
-        x_ = event.x;
-        y_ = event.y;
-        return;
-      case InputEvent::Kind::Wheel:
-        if (inPicture && event.steps != 0) session.Dolly(event.steps);
-        return;
-      default:
-        return;
-    }
-  }
-
- private:
-  std::optional<InputEvent::Button> grip_;
-  bool pans_ = false;
-  double x_ = 0, y_ = 0;
-};
-
 /// The window with all that is in it.
 class Viewer {
  public:
@@ -97,7 +59,10 @@ class Viewer {
     window_.Size(width_, height_);
     state_.scale = window_.scale();
     session_.log().Write(LogLine("start")
+                             .Number("log", kLogVersion)
+                             .Text("version", PERCALE_VERSION)
                              .Text("scene", PathText(options.sceneFile))
+                             .Config(options.scene)
                              .Text("shader", session_.view().look.shader)
                              .Text("root", PathText(options.root))
                              .Number("width", width_)
@@ -105,6 +70,7 @@ class Viewer {
                              .Number("samples", window_.samples())
                              .Text("renderer", graphics.renderer)
                              .Flag("software", graphics.software)
+                             .Number("history", static_cast<double>(options.historyBudget))
                              .Number("frame", session_.snapshot().report.frame)
                              .Hash("hash", session_.snapshot().hash));
   }
@@ -178,10 +144,15 @@ class Viewer {
     const std::vector<InputEvent> events = window_.TakeEvents();
     // Whose a press is depends on where it was made, not on where the pointer is by now.
     for (const InputEvent& event : events) {
-      hand_.Take(event, !Window::OverPanels(event.x, event.y), PictureWidth(), height_, session_);
+      hand_.Take(event, !Window::OverPanels(event.x, event.y), {PictureWidth(), height_}, session_);
     }
     HandleKeys(events);
+    const ImVec2 pointer = ImGui::GetIO().MousePos;
+    state_.pointerRay =
+        session_.view().camera.Ray(double(pointer.x) - 0.5, double(pointer.y) - 0.5, PictureWidth(), height_);
     state_.boxes.clear();
+    session_.HoldChanges(hand_.dragging() || ImGui::IsMouseDown(ImGuiMouseButton_Left));
+    DrawGizmo();
     DrawPanels();
     // What the keys and panels have just changed shows at once.
     session_.Update(Now());
@@ -205,6 +176,12 @@ class Viewer {
     DrawHelp(session_, state_, static_cast<float>(PictureWidth()), height);
   }
 
+  void DrawGizmo() {
+    const auto selected = hand_.Selected(session_);
+    const auto gizmo = selected ? GizmoOf(*selected, session_, {PictureWidth(), height_}) : std::nullopt;
+    if (gizmo) percale::viewer::DrawGizmo(*gizmo, hand_.axis(), state_);
+  }
+
   void DrawScene() {
     int pixels = 0, rows = 0;
     window_.FramebufferSize(pixels, rows);
@@ -215,7 +192,7 @@ class Viewer {
     for (const ClothCopy& cloth : snapshot.cloths) {
       shapes_.push_back({cloth.positions, cloth.topology->uv, cloth.topology->triangles, cloth.topology->springs});
     }
-    const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows);
+    const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows, snapshot.balls);
     const Status drawn = device_.Draw(list, columns, rows);
     session_.ReportDrawing(drawn, device_.TakeWarnings());
   }

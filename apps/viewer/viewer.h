@@ -2,6 +2,7 @@
 /// \file
 /// The interactive viewer.
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ struct ViewerOptions {
   int width = 1024, height = 800;    ///< Of the window, on a display of ordinary density [pixel].
   int samples = 0;                   ///< Per pixel; 0: 4, or 1 where the CPU draws.
   int threads = 0;                   ///< Of the simulation; 0: as many as there are cores.
-  std::filesystem::path log;         ///< Session log (apps/viewer/session_log.h); empty: none.
+  std::size_t historyBudget = std::size_t{256} << 20;  ///< Memory for past frames [bytes]; 0: none are kept.
+  std::filesystem::path log;                           ///< Session log (apps/viewer/session_log.h); empty: none.
 };
 
 /// Shows the scene in a window, paused, until the user closes it. Messages go to stderr. Returns an

@@ -93,6 +93,7 @@ struct Window::Callbacks {
     event.kind = action == GLFW_PRESS ? InputEvent::Kind::Press : InputEvent::Kind::Release;
     event.button = button == GLFW_MOUSE_BUTTON_LEFT ? InputEvent::Button::Left : InputEvent::Button::Right;
     event.control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    event.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
     // Not where the pointer is by now: a quick hand has moved on since the press.
     event.x = Of(window).x;
     event.y = Of(window).y;

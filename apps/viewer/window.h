@@ -34,6 +34,7 @@ struct InputEvent {
   bool repeated = false;  ///< The key is held.
   enum class Button { Left, Right } button = Button::Left;
   bool control = false;  ///< Ctrl was held at the press.
+  bool shift = false;    ///< Shift was.
   double x = 0, y = 0;   ///< [screen unit] from the top left.
   double steps = 0;      ///< Away from the user.
   std::filesystem::path file;

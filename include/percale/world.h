@@ -127,6 +127,8 @@ class World {
   /// Grips from now on, in place of those there were. The numbers of cloth and vertex must exist, and
   /// Check find nothing.
   void SetHandles(std::vector<Handle> handles);
+  /// Puts the vertex of a handle at its target at once, and the cloth around it along, their velocities kept.
+  void Place(const Handle& handle);
   /// One more ball; of more than kMostBalls the oldest goes. Check must find nothing.
   void AddBall(const Ball& ball);
   /// One more gust, from its start on. Check must find nothing.

@@ -452,19 +452,40 @@ void SpringsEngine::Collide() {
 }
 
 void SpringsEngine::Pull(const Handle& handle) {
-  const Sheet& sheet = sheets_[Index(handle.cloth)];
-  const int centre = sheet.firstPoint + handle.vertex;
-  if (fixed_[Index(centre)]) return;
+  const int centre = sheets_[Index(handle.cloth)].firstPoint + handle.vertex;
   // m (x' - x) / dt^2 = k (target - x') - c (x' - before) / dt, with k = m w^2 and c = 2 m w.
   const double w = 2 * std::numbers::pi * handle.frequency * dt_;
   const Vec3 x = Get(positions_, centre), before = Get(previous_, centre);
-  const Vec3 way = ((handle.target - x) * (w * w) + (before - x) * (2 * w)) / (1 + w * w + 2 * w);
+  MovePatch(handle, ((handle.target - x) * (w * w) + (before - x) * (2 * w)) / (1 + w * w + 2 * w), false);
+}
+
+void SpringsEngine::Place(const Handle& handle) {
+  const int centre = sheets_[Index(handle.cloth)].firstPoint + handle.vertex;
+  MovePatch(handle, handle.target - Get(positions_, centre), true);
+}
+
+/// Moves the vertex of a handle by `way`, and the cloth around it along, less and less towards the radius.
+/// Pins stay, unless the vertex is one itself: then it moves alone.
+void SpringsEngine::MovePatch(const Handle& handle, const Vec3& way, bool keepVelocity) {
+  const Sheet& sheet = sheets_[Index(handle.cloth)];
+  const int centre = sheet.firstPoint + handle.vertex;
+  const auto move = [&](int p, const Vec3& by) {
+    Put(positions_, p, Get(positions_, p) + by);
+    if (keepVelocity) Put(previous_, p, Get(previous_, p) + by);
+  };
+  for (std::size_t k = sheet.firstPin; k < sheet.firstPin + sheet.pinCount; ++k) {
+    PinnedPoint& pin = pins_[k];
+    if (pin.point != centre) continue;
+    move(centre, way);
+    pin.anchor += way;
+    pin.target = pin.previousTarget = Get(positions_, centre);
+    return;
+  }
   const Vec3 restCentre = start_[Index(centre)];
   for (int p = sheet.firstPoint; p < sheet.firstPoint + sheet.PointCount(); ++p) {
     const Vec3 d = start_[Index(p)] - restCentre;
     const double share = 1 - Dot(d, d) / (handle.radius * handle.radius);
-    if (fixed_[Index(p)] || share <= 0) continue;
-    Put(positions_, p, Get(positions_, p) + way * (share * share));
+    if (!fixed_[Index(p)] && share > 0) move(p, way * (share * share));
   }
 }
 

@@ -65,7 +65,7 @@ class SpringsEngine {
   void MoveColliders(double time);
   /// Forces and integration. Returns false when a coordinate went out of bounds.
   bool ApplyForces(double time, std::span<const Gust> gusts = {});
-  /// Draws a vertex and the cloth around it to the handle's target.
+  /// Draws a vertex and the cloth around it to the handle's target; a pin is carried there alone.
   void Pull(const Handle& handle);
   void FindContacts();
   void SelfCollide();
@@ -75,6 +75,9 @@ class SpringsEngine {
   /// from pinned points, which a ball does not feel.
   void CollideBall(Ball& ball);
   void LimitStrain();
+
+  /// Between two frames: puts a vertex at the handle's target, and the cloth around it along.
+  void Place(const Handle& handle);
 
   /// What was done since the last call.
   EngineCounts TakeCounts() { return std::exchange(counts_, {}); }
@@ -103,6 +106,7 @@ class SpringsEngine {
 
   void AddSheet(const ClothModel& model);
   void UpdatePins();
+  void MovePatch(const Handle& handle, const Vec3& way, bool keepVelocity);
   Vec3 MotionOf(const PinnedPoint& pin, double time) const;
   void ForgetBoxes();
   void ComputeWind(double time, std::span<const Gust> gusts);

@@ -30,6 +30,7 @@ constexpr EngineTable kSprings = {
     .collide = [](void* e) { Self(e).Collide(); },
     .collideBall = [](void* e, Ball& ball) { Self(e).CollideBall(ball); },
     .limitStrain = [](void* e) { Self(e).LimitStrain(); },
+    .place = [](void* e, const Handle& handle) { Self(e).Place(handle); },
     .readState = [](const void* e, int cloth, std::span<Vec3> positions,
                     std::span<Vec3> previous) { Self(e).ReadState(cloth, positions, previous); },
     .readAnchors = [](const void* e, int cloth, std::vector<Vec3>& anchors) { Self(e).ReadAnchors(cloth, anchors); },

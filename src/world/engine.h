@@ -32,6 +32,8 @@ struct EngineTable {
   void (*collideBall)(void*, Ball&);  ///< Part of collide: cloth and ball push each other apart.
   void (*limitStrain)(void*);
 
+  void (*place)(void*, const Handle&);  ///< Between two frames: see World::Place.
+
   // What a frame leaves behind.
   void (*readState)(const void*, int cloth, std::span<Vec3> positions, std::span<Vec3> previous);
   void (*readAnchors)(const void*, int cloth, std::vector<Vec3>& anchors);  ///< Of the pins, see WorldState.

@@ -253,6 +253,15 @@ void World::SetHandles(std::vector<Handle> handles) {
   impl_->handles = std::move(handles);
 }
 
+void World::Place(const Handle& handle) {
+  Impl& w = *impl_;
+  w.engine->place(w.engineState.get(), handle);
+  Impl::Cloth& cloth = w.cloths[static_cast<std::size_t>(handle.cloth)];
+  w.engine->readState(w.engineState.get(), handle.cloth, cloth.positions, cloth.previous);
+  w.restFrames = 0;
+  w.report.atRest = false;
+}
+
 void World::AddBall(const Ball& ball) {
   assert(!Check(ball));
   std::vector<Ball>& balls = impl_->balls;

@@ -206,14 +206,56 @@ TEST_CASE("a handle leaves pins, and points outside its radius, to themselves") 
   scene.cloths[0].ks = 0;
   scene.cloths[0].pinned = {{6, 6}, {2, 2}};
   World world(scene);
-  world.SetHandles({{0, 2 * 12 + 2, {0, 2, 0}, 0.3, 50}});  // a pin
-  Run(world, 5);
-  for (const Vec3& v : world.Cloth(0).velocities()) CHECK(v == Vec3{});
   world.SetHandles({{0, 6 * 12 + 5, {0.45, 1.002, 0.55}, 0.2, 50}});
   Run(world, 5);
   CHECK(world.Cloth(0).velocities()[6 * 12 + 6] == Vec3{});
   CHECK(world.Cloth(0).positions()[11 * 12 + 11].y == 1);
   CHECK(world.Cloth(0).positions()[6 * 12 + 4].y > 1);
+}
+
+TEST_CASE("a handle on a pin carries it, and it stays where it was carried until the cloth is reset") {
+  World world(CourseScene("pinned2", 12));
+  Run(world, 5);
+  const Vec3 target = {0.3, 1.4, 0.2};
+  world.SetHandles({{0, 0, target, 0.2, 50}});
+  Run(world, 30);
+  world.SetHandles({});
+  const Vec3 held = world.Cloth(0).positions()[0];
+  CHECK(Length(held - target) < 1e-3);
+  Run(world, 10);
+  CHECK(world.Cloth(0).positions()[0] == held);
+  CHECK(world.Cloth(0).velocities()[0] == Vec3{});
+  WorldState state;
+  world.Save(state);
+  const auto expected = Hashes(world, 5);
+  world.Restore(state);
+  CHECK(Hashes(world, 5) == expected);
+  world.Reset();
+  CHECK(world.Cloth(0).positions()[0] == Vec3{0, 1, 0});
+}
+
+TEST_CASE("cloth that is placed is there at once, keeps its velocity, and goes on from there") {
+  World world(CourseScene("pinned2", 16));
+  Run(world, 20);
+  const int vertex = 12 * 16 + 7;
+  const Vec3 target = world.Cloth(0).positions()[vertex] + Vec3{0.1, 0.2, -0.1};
+  const Vec3 velocity = world.Cloth(0).velocities()[vertex];
+  const Vec3 far = world.Cloth(0).positions()[3 * 16 + 3];
+  world.Place({0, vertex, target, 0.2, 50});
+  CHECK(Length(world.Cloth(0).positions()[vertex] - target) < 1e-12);
+  CHECK(Length(world.Cloth(0).velocities()[vertex] - velocity) < 1e-9);
+  CHECK(world.Cloth(0).positions()[3 * 16 + 3] == far);
+  CHECK(world.report().frame == 20);
+  WorldState state;
+  world.Save(state);
+  const auto expected = Hashes(world, 8);
+  world.Restore(state);
+  CHECK(Hashes(world, 8) == expected);
+  // A pin is placed alone.
+  const Vec3 beside = world.Cloth(0).positions()[1];
+  world.Place({0, 0, {-0.2, 1.1, 0}, 0.5, 50});
+  CHECK(Length(world.Cloth(0).positions()[0] - Vec3{-0.2, 1.1, 0}) < 1e-12);
+  CHECK(world.Cloth(0).positions()[1] == beside);
 }
 
 TEST_CASE("cloth and ball exchange momentum without loss") {

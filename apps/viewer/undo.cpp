@@ -1,0 +1,47 @@
+#include "apps/viewer/undo.h"
+
+#include <utility>
+
+namespace percale::viewer {
+
+void UndoStack::Hold(bool held) {
+  if (!held) begun_ = false;
+  held_ = held;
+}
+
+bool UndoStack::Merges(const std::string& path) const {
+  return begun_ && !done_.empty() && done_.back().path == path;
+}
+
+void UndoStack::Push(Change change) {
+  undone_.clear();
+  begun_ = held_ && !change.path.empty();
+  done_.push_back(std::move(change));
+  if (done_.size() > kMost) done_.erase(done_.begin());
+}
+
+void UndoStack::Extend(const Scene& after) {
+  done_.back().after = after;
+}
+
+void UndoStack::Undone(std::uint64_t command) {
+  undone_.push_back(std::move(done_.back()));
+  done_.pop_back();
+  undone_.back().command = command;
+  begun_ = false;
+}
+
+void UndoStack::Redone(std::uint64_t command) {
+  done_.push_back(std::move(undone_.back()));
+  undone_.pop_back();
+  done_.back().command = command;
+  begun_ = false;
+}
+
+void UndoStack::Clear() {
+  done_.clear();
+  undone_.clear();
+  begun_ = false;
+}
+
+}  // namespace percale::viewer
