@@ -41,6 +41,7 @@ struct DrawItem {
   bool pushBack = false;             ///< Lines of the same surface follow: leave them in front.
   Surface surface = Surface::Cloth;  ///< Chooses the part of the shader.
   bool castsShadow = false;          ///< Stands in the shadow map of shaders that want one.
+  Color backColor{1, 1, 1, 1};       ///< u_back_color.
 };
 
 struct DrawList {

@@ -320,6 +320,7 @@ void GlDevice::Impl::Draw(const DrawItem& item, const ShaderProgram* shader) {
   if (shader) {
     if (shader->Location("u_model") >= 0) glUniformMatrix4fv(shader->Location("u_model"), 1, GL_FALSE, model.data());
     if (shader->Location("u_color") >= 0) glUniform4fv(shader->Location("u_color"), 1, item.color.data());
+    if (shader->Location("u_back_color") >= 0) glUniform4fv(shader->Location("u_back_color"), 1, item.backColor.data());
     if (shader->Location("u_lines") >= 0) glUniform1i(shader->Location("u_lines"), isLines);
   } else {
     glUniformMatrix4fv(glGetUniformLocation(plain, "u_model"), 1, GL_FALSE, model.data());

@@ -16,6 +16,10 @@ constexpr double kWidestLight = 0.98;  // Sine of half the angle that a shadow m
 constexpr Color kPlaneColor{0.7f, 0.7f, 0.7f, 1};
 constexpr Color kOverlayColor{0.08f, 0.08f, 0.08f, 1};
 
+Color Times(const Color& a, const Vec3& b) {
+  return {a[0] * float(b.x), a[1] * float(b.y), a[2] * float(b.z), a[3]};
+}
+
 // One cloth's mesh and what it was made of.
 struct ClothMesh {
   std::shared_ptr<DrawMesh> mesh = std::make_shared<DrawMesh>();
@@ -170,13 +174,17 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   list.shadowMapSize = view.shadowMapSize;
   list.items.clear();
 
-  const Color color{float(view.look.color.x), float(view.look.color.y), float(view.look.color.z), 1};
+  const Color color = Times({1, 1, 1, 1}, view.look.color);
   const bool linesOnly = view.look.shader == "Wireframe";
   Box casters;
   impl_->cloths.resize(cloths.size());
   for (std::size_t i = 0; view.cloths && i < cloths.size(); ++i) {
     percale::Update(impl_->cloths[i], cloths[i], view.look.tangents);
     DrawItem item{impl_->cloths[i].mesh, DrawItem::Primitive::Lines, view.look.shader, color, {}, false};
+    if (i < scene.cloths.size()) {
+      item.color = Times(color, scene.cloths[i].color);
+      item.backColor = Times(color, scene.cloths[i].backColor);
+    }
     if (linesOnly) {
       list.items.push_back(item);
       continue;

@@ -35,6 +35,7 @@ constexpr KnownUniform kUniforms[] = {
     {"u_view_projection", GL_FLOAT_MAT4, "mat4"},
     {"u_light_view_projection", GL_FLOAT_MAT4, "mat4"},
     {"u_color", GL_FLOAT_VEC4, "vec4"},
+    {"u_back_color", GL_FLOAT_VEC4, "vec4"},
     {"u_cam_pos", GL_FLOAT_VEC3, "vec3"},
     {"u_light_pos", GL_FLOAT_VEC3, "vec3"},
     {"u_light_intensity", GL_FLOAT_VEC3, "vec3"},

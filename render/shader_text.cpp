@@ -159,8 +159,9 @@ class Reader {
       if (directive && directive->word == "include") {
         Include(*directive, file, number);
       } else {
-        const bool isSecondVersion = directive && directive->word == "version" && file > 0;
-        result.text += isSecondVersion ? "\n" : line;
+        const bool isVersion = directive && directive->word == "version";
+        result.text += isVersion && hasVersion_ ? "\n" : line;
+        hasVersion_ |= isVersion;
         if (result.text.back() != '\n') result.text += '\n';
         result.lines.push_back({file, number});
       }
@@ -200,6 +201,7 @@ class Reader {
   }
 
   std::filesystem::path folder_;
+  bool hasVersion_ = false;
   std::vector<int> open_;  // The files that are being read, each included by the one before.
 };
 

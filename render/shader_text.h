@@ -17,8 +17,8 @@ namespace percale {
 ///     #include "house_light.glsl"
 ///
 /// names a file relative to the shader's folder, which it cannot leave. A file that was included
-/// before is left out, so that two files may need the same third one. The #version line of an
-/// included file is blank, so that a whole shader can be included.
+/// before is left out, so that two files may need the same third one. The first #version line counts
+/// and others are blank, so that a whole shader can be included.
 struct ShaderText {
   struct File {
     std::filesystem::path path;

@@ -25,6 +25,7 @@ doctest-dev|test|the test framework
 python3|test|drives the program in tests
 xvfb|test|a display for tests of the window
 xdotool|test|keys and mouse for tests of the window
+glslang-tools|test|compiles the shaders as a browser does
 LIST
 }
 

@@ -45,6 +45,8 @@ struct ClothSettings {
   double density = 150;                               ///< Areal density [kg/m^2], >= 0.
   double ks = 5000;                                   ///< Spring constant [N/m], >= 0.
   int seed = 184;                                     ///< Of the vertical sheet's random z.
+  Vec3 color{1, 1, 1};                                ///< Of the front, times the look's base colour, 0..1 each.
+  Vec3 backColor{1, 1, 1};                            ///< The same of the back, where a shader tells the sides apart.
 };
 
 struct SphereSettings {

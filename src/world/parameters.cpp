@@ -226,6 +226,10 @@ std::vector<Parameter> MakeTable() {
       .help = "Stiffness of the springs; 500 sags like a net, 5000 like cloth, 50000 is stiff."}),
     Cloth<&C::seed>({.name = "seed", .label = "Seed", .min = 0, .max = kLargestInt,
       .typicalMin = 0, .typicalMax = 1000, .effect = kRebuild, .help = "Of the standing sheet's random z."}),
+    Cloth<&C::color>({.name = "color", .label = "Colour", .min = 0, .max = 1,
+      .typicalMin = 0, .typicalMax = 1, .help = "Of this cloth: red, green, blue, times the base colour of the look."}),
+    Cloth<&C::backColor>({.name = "back_color", .label = "Colour of the back", .min = 0, .max = 1,
+      .typicalMin = 0, .typicalMax = 1, .help = "The same for its back, with shaders that tell the sides apart."}),
 
     Sphere<&SphereSettings::origin>({.name = "origin", .label = "Centre", .unit = "m", .min = -kFarthest,
       .max = kFarthest, .required = true,
@@ -303,7 +307,7 @@ std::vector<Parameter> MakeTable() {
       .typicalMin = -89, .typicalMax = 89, .help = "Above the horizon."}),
 
     Look<&LookSettings::shader>({.name = "shader", .label = "Shader",
-      .help = "Name of a file shaders/NAME.frag, such as Wireframe, Normal, Phong, Texture, Mirror, or your own."}),
+      .help = "Name of a file shaders/NAME.frag, such as Wireframe, Normal, Phong, Fabric, or your own."}),
     Look<&LookSettings::color>({.name = "color", .label = "Colour", .min = 0, .max = 1,
       .typicalMin = 0, .typicalMax = 1, .help = "Base colour of cloths and spheres: red, green, blue."}),
     Look<&LookSettings::normalScaling>({.name = "normal_scaling", .label = "Normal scale", .min = -1000, .max = 1000,

@@ -158,3 +158,92 @@ TEST_CASE("shaders that do not fit together, missing and empty files, are errors
   CHECK_FALSE(test::Contains(library.Problems("Needs"), "error: error:"));
   CHECK(test::Contains(library.Problems("Neds"), "did you mean `Needs`"));
 }
+
+TEST_CASE("an error in an included file is reported with that file and line") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  const TemporaryFolder folder;
+  WriteText(folder / "Default.vert", kVertex);
+  WriteText(folder / "A.frag",
+            "#version 330\n#include \"light.glsl\"\nout vec4 out_color;\nvoid main() { out_color = light(); }\n");
+  WriteText(folder / "light.glsl", "// Two lines\n// of comment.\nvec4 light() { return missing; }\n");
+  ShaderLibrary library(folder.path());
+  CHECK(library.Find("A") == nullptr);
+  const Diagnostics inside = library.Problems("A");
+  REQUIRE(HasErrors(inside));
+  CHECK(inside.front().place.file == (folder / "light.glsl").string());
+  CHECK(inside.front().place.line == 3);
+  CHECK(inside.front().excerpt.find("return missing") != std::string::npos);
+
+  // Behind an include, the lines are still those of the file.
+  WriteText(folder / "light.glsl", "// One line, and more.\n\n\n\nvec4 light() { return vec4(1.0); }\n");
+  WriteText(folder / "A.frag",
+            "#version 330\n#include \"light.glsl\"\nout vec4 out_color;\nvoid main() { out_color = gone; }\n");
+  CHECK(library.ReloadChanged());
+  const Diagnostics behind = library.Problems("A");
+  REQUIRE(HasErrors(behind));
+  CHECK(behind.front().place.file == (folder / "A.frag").string());
+  CHECK(behind.front().place.line == 4);
+}
+
+TEST_CASE("saving an included file brings the shaders that use it up to date, and no others") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  const TemporaryFolder folder;
+  WriteText(folder / "Default.vert", kVertex);
+  WriteText(folder / "A.frag", "#include \"light.glsl\"\n" + kGood);
+  WriteText(folder / "B.frag", kGood);
+  ShaderLibrary library(folder.path());
+  CHECK(library.Find("A") == nullptr);
+  CHECK(test::Contains(library.Problems("A"), "light.glsl"));
+  REQUIRE(library.Find("B") != nullptr);
+  const unsigned other = library.Find("B")->program;
+
+  WriteText(folder / "light.glsl", "#version 330\nuniform float u_warmth;  // @range 1 3 @default 2 @label Warmth\n");
+  WriteText(folder / "A.frag", "#version 330\n#include \"light.glsl\"\n" + kGood.substr(kGood.find('\n') + 1));
+  CHECK(library.ReloadChanged());
+  INFO(Format(library.Problems("A")));
+  REQUIRE(library.Find("A") != nullptr);
+  REQUIRE(library.Parameters("A").size() == 1);
+  CHECK(library.Parameters("A")[0].label == "Warmth");
+  CHECK_FALSE(library.ReloadChanged());
+
+  WriteText(folder / "light.glsl", "uniform float u_warmth;  // @range 1 9 @default 2 @label Warmth\n#include \"x\"\n");
+  CHECK(library.ReloadChanged());
+  CHECK(library.Parameters("A")[0].max == 9);
+  CHECK(library.Find("A") != nullptr);  // The last good one.
+  CHECK(test::Contains(library.Problems("A"), "\"x\""));
+  WriteText(folder / "x", "\n");
+  CHECK(library.ReloadChanged());
+  CHECK(library.Problems("A").empty());
+  CHECK(library.Find("B")->program == other);
+}
+
+TEST_CASE("parts of a shader draw other surfaces, share its parameters and are no shaders of their own") {
+  const HeadlessContext context = Must(HeadlessContext::Create());
+  const TemporaryFolder folder;
+  WriteText(folder / "Default.vert", kVertex);
+  WriteText(folder / "A.frag", kGood);
+  const std::string part = kGood + "uniform float u_own;  // @range 0 2\n";
+  WriteText(folder / "A.plane.frag", part);
+  ShaderLibrary library(folder.path());
+  CHECK(library.names() == std::vector<std::string>{"A"});
+  const ShaderProgram* own = library.Find("A");
+  REQUIRE(own != nullptr);
+  CHECK(library.Find("A", Surface::Sphere) == own);
+  CHECK(library.Find("A", Surface::Background) == nullptr);
+  CHECK(library.Problems("A").empty());
+  REQUIRE(library.Find("A", Surface::Plane) != nullptr);
+  CHECK(library.Find("A", Surface::Plane) != own);
+  CHECK(library.Parameters("A").size() == 1);
+
+  WriteText(folder / "A.background.frag", kBad);
+  CHECK(library.ReloadChanged());
+  CHECK(library.Find("A", Surface::Background) == nullptr);
+  CHECK(test::Contains(library.Problems("A"), "A.background.frag"));
+  WriteText(folder / "A.background.frag", kGood);
+  std::filesystem::remove(folder / "A.plane.frag");
+  CHECK(library.ReloadChanged());
+  CHECK(library.Problems("A").empty());
+  CHECK(library.Find("A", Surface::Background) != nullptr);
+  CHECK(library.Find("A", Surface::Plane) == library.Find("A"));
+  CHECK(library.Parameters("A").empty());
+}
