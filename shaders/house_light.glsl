@@ -13,7 +13,7 @@ uniform float u_fill;       // @range 0 2 @default 0.42 @label Fill light @help 
 uniform float u_softness;   // @range 0 0.1 @default 0.022 @label Shadow softness @help Width of the edges of shadows [m]
 uniform int u_shadow_taps;  // @range 1 64 @default 16 @label Shadow taps @help Samples for a soft shadow: more are smoother and slower
 uniform float u_exposure;   // @range 0.1 4 @default 1 @label Exposure
-uniform vec3 u_backdrop;    // @color @default 0.82 0.82 0.82 @label Backdrop @help Colour of the background
+uniform vec3 u_backdrop;    // @color @default 0.86 0.86 0.855 @label Backdrop @help Colour of the background
 
 const float kPi = 3.14159265;
 
