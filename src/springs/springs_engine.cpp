@@ -7,25 +7,20 @@
 #include <numbers>
 #include <utility>
 
+#include "collide/boxes.h"
+
 namespace percale::springs {
 namespace {
 
-constexpr double kStretchLimit = 1.1;   // of the rest length; Provot 1995, section 5
-constexpr double kNearShare = 0.01;     // a spring this close to the limit is looked at; tuned on pinned2
-constexpr double kBendingShare = 0.2;   // bending springs have this share of ks
-constexpr double kBoxesPerSpacing = 3;  // a box of the spatial map spans three spacings of the grid
-constexpr double kBound = 1e6;          // m; a cloth this far out has diverged
-constexpr int kPointsPerChunk = 2560;   // of all loops; below it a second thread does not pay
+constexpr double kStretchLimit = 1.1;  // of the rest length; Provot 1995, section 5
+constexpr double kNearShare = 0.01;    // a spring this close to the limit is looked at; tuned on pinned2
+constexpr double kBendingShare = 0.2;  // bending springs have this share of ks
+constexpr double kBound = 1e6;         // m; a cloth this far out has diverged
+constexpr int kPointsPerChunk = 2560;  // of all loops; below it a second thread does not pay
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
-}
-
-std::uint64_t Power(std::int64_t base, int exponent) {
-  std::uint64_t result = 1;
-  for (int i = 0; i < exponent; ++i) result *= static_cast<std::uint64_t>(base);
-  return result;
 }
 
 /// Point p of arrays with one axis each.
@@ -34,11 +29,6 @@ Vec3 Get(const double* const axes[3], int p) {
 }
 void Put(double* const axes[3], int p, const Vec3& at) {
   axes[0][p] = at.x, axes[1][p] = at.y, axes[2][p] = at.z;
-}
-
-/// A box index, kept where a 64-bit integer can hold it.
-std::int64_t BoxIndex(double coordinate, double size) {
-  return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / size), -1e15, 1e15));
 }
 
 }  // namespace
@@ -119,7 +109,6 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
 void SpringsEngine::Configure(const Scene& scene) {
   scene_ = scene;
   dt_ = scene_.TimeStep();
-  double width = 0, height = 0;
   greatestApart_ = 0;
   sameThickness_ = true;
   for (std::size_t c = 0; c < sheets_.size(); ++c) {
@@ -133,17 +122,13 @@ void SpringsEngine::Configure(const Scene& scene) {
     }
     sheet.mass = PointMass(cloth);
     sheet.keep = 1 - cloth.damping / 100;
-    width = std::max(width, kBoxesPerSpacing * cloth.width / cloth.numWidthPoints);
-    height = std::max(height, kBoxesPerSpacing * cloth.height / cloth.numHeightPoints);
     const auto first = thickness_.begin() + sheet.firstPoint;
     std::fill(first, first + sheet.PointCount(), cloth.thickness);
     greatestApart_ = std::max(greatestApart_, 2 * cloth.thickness);
     sameThickness_ = sameThickness_ && cloth.thickness == scene_.cloths[0].thickness;
   }
-  boxSize_[0] = width;
-  boxSize_[1] = height;
-  boxSize_[2] = std::max(width, height);
-  bound_ = std::min(kBound, 0x1p50 * std::min(width, height));  // beyond it box indices would not be exact
+  boxSize_ = BoxSize(scene_.cloths);
+  bound_ = std::min(kBound, 0x1p50 * std::min(boxSize_.x, boxSize_.y));  // beyond it box indices would not be exact
 
   UpdatePins();
 }
@@ -341,7 +326,7 @@ void SpringsEngine::FindContacts() {
             ? kernels_.boxKeys({begin,
                                 end - begin,
                                 {positions_[0] + begin, positions_[1] + begin, positions_[2] + begin},
-                                {boxSize_[0], boxSize_[1], boxSize_[2]},
+                                {boxSize_.x, boxSize_.y, boxSize_.z},
                                 boxKeys_.data() + begin,
                                 boxChanges_.data() + begin,
                                 &boxesWrap_[Index(chunk)]})
@@ -375,11 +360,7 @@ std::int64_t SpringsEngine::HashKeys(int begin, int end) {
   const HashFunction hash = scene_.simulation.hash;
   std::int64_t changed = 0;
   for (int p = begin; p < end; ++p) {
-    const std::int64_t x = BoxIndex(positions_[0][p], boxSize_[0]), y = BoxIndex(positions_[1][p], boxSize_[1]),
-                       z = BoxIndex(positions_[2][p], boxSize_[2]);
-    const std::uint64_t key = hash == HashFunction::Linear   ? static_cast<std::uint64_t>(7 * x + 5 * y + 3 * z)
-                              : hash == HashFunction::Powers ? Power(x, 6) + Power(y, 4) + Power(z, 2)
-                                                             : 0;  // Brute: one bucket for all
+    const std::uint64_t key = SharedBucket(BoxOf(Get(positions_, p), boxSize_), hash);
     if (key != boxKeys_[Index(p)]) boxChanges_[Index(begin + changed++)] = p;
     boxKeys_[Index(p)] = key;
   }
@@ -403,7 +384,7 @@ void SpringsEngine::SelfCollide() {
     args.thickness = thickness_.data();
     args.greatestApart = greatestApart_;
     args.sameThickness = sameThickness_;
-    args.greatestSpan = near ? boxSize_[2] : kInfinity;
+    args.greatestSpan = near ? boxSize_.z : kInfinity;
     args.stepsPerFrame = scene_.simulation.stepsPerFrame;
     // No bucket of a chunk has more points than the chunk.
     args.scratch = bucketScratch_.data() + 3 * (bucketChunks_[Index(chunk)].pointsBefore + kGridPad * chunk);

@@ -142,7 +142,7 @@ class SpringsEngine {
   std::vector<std::int32_t> boxChanges_;  // points whose box changed: per chunk of points, from its first on
   std::vector<std::uint8_t> boxesWrap_;   // per chunk of points: whether box indices did not fit since the start
   bool mapBuilt_ = false;
-  double boxSize_[3] = {};
+  Vec3 boxSize_;
   double bound_ = 0;
   double greatestApart_ = 0;  // greatest sum of two thicknesses [m]
   bool sameThickness_ = true;
