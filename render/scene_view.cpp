@@ -215,8 +215,9 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
     for (const SphereSettings& s : scene.spheres) addSphere(s.origin, kDrawnSphereRadius * s.radius);
     for (const Ball& ball : balls) addSphere(ball.position, kDrawnSphereRadius * ball.radius);
     for (const std::shared_ptr<DrawMesh>& plane : impl_->planes) {
+      // A sheet that lies on a plane has its springs in the plane, as far as depth can tell.
       list.items.push_back(
-          {plane, DrawItem::Primitive::Triangles, view.look.shader, kPlaneColor, {}, false, Surface::Plane});
+          {plane, DrawItem::Primitive::Triangles, view.look.shader, kPlaneColor, {}, view.wireframe, Surface::Plane});
     }
   }
   if (view.cloths && view.wireframe && !linesOnly) {

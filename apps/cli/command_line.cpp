@@ -6,15 +6,18 @@
 #include <cstdio>
 #include <iterator>
 #include <limits>
+#include <set>
 
+#include "apps/cli/figure_table.h"
 #include "apps/cli/options.h"
+#include "apps/cli/session.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
 
 namespace percale::cli {
 namespace {
 
-constexpr std::string_view kVerbs[] = {"view",  "simulate", "shot",   "render", "replay",
+constexpr std::string_view kVerbs[] = {"view",  "simulate", "shot",   "render", "figures", "replay",
                                        "check", "info",     "doctor", "bench",  "version"};
 
 constexpr int kMostFrames = 100'000'000;
@@ -172,13 +175,7 @@ class Builder {
            if (numbers.size() != 3) Refuse("--target", "three numbers X,Y,Z", text);
            options_.target = numbers;
          });
-    Call(app, "--size", "Width and height in pixels; default 1024x800", "WxH", "Picture",
-         [this](const std::string& text) {
-           const std::vector<std::string> parts = Split(text, 'x');
-           if (parts.size() != 2) Refuse("--size", "WIDTHxHEIGHT such as 1024x800", text);
-           options_.width = Whole("--size", parts[0], 1, kLargestPicture);
-           options_.height = Whole("--size", parts[1], 1, kLargestPicture);
-         });
+    Size(app);
     Call(app, "--samples",
          "Samples per pixel, which smooth edges: 1, 2, 4, 8 or 16; default 4, in the viewer 1 where the CPU draws", "N",
          "Picture", [this](const std::string& text) {
@@ -187,6 +184,46 @@ class Builder {
              Refuse("--samples", "1, 2, 4, 8 or 16", text);
            }
            options_.samples = static_cast<int>(*number);
+         });
+  }
+
+  void Size(CLI::App& app) {
+    Call(app, "--size", "Width and height in pixels; default 1024x800", "WxH", "Picture",
+         [this](const std::string& text) {
+           const std::vector<std::string> parts = Split(text, 'x');
+           if (parts.size() != 2) Refuse("--size", "WIDTHxHEIGHT such as 1024x800", text);
+           options_.width = Whole("--size", parts[0], 1, kLargestPicture);
+           options_.height = Whole("--size", parts[1], 1, kLargestPicture);
+         });
+  }
+
+  void Wireframe(CLI::App& app) {
+    app.add_flag("--wireframe", options_.wireframe, "Draws the springs over the surface as well")->group("Picture");
+  }
+
+  void Folder(CLI::App& app) {
+    Call(app, "-o", "The folder to write into; default: figures", "DIR", "Output", [this](const std::string& text) {
+      if (text.empty()) Refuse("-o", "the name of a folder", text);
+      options_.output = text;
+    });
+  }
+
+  void Only(CLI::App& app) {
+    Call(app, "--only", "Which figures to make, such as 19-22,31; default: all", "LIST", "Picture",
+         [this](const std::string& text) {
+           const std::string expected = Text("figures 1..%d such as 19-22,31", kFigureCount);
+           std::set<int> figures;
+           for (const std::string& part : Split(text, ',')) {
+             const std::vector<std::string> ends = Split(part, '-');
+             const auto number = [&](const std::string& end) {
+               if (!LooksWhole(end)) Refuse("--only", expected, text);
+               return static_cast<int>(Number("--only", end, 1, kFigureCount, expected));
+             };
+             const int first = number(ends.front()), last = number(ends.back());
+             if (ends.size() > 2 || first > last) Refuse("--only", expected, text);
+             for (int figure = first; figure <= last; ++figure) figures.insert(figure);
+           }
+           options_.figures.assign(figures.begin(), figures.end());
          });
   }
 
@@ -312,6 +349,7 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   builder.Scene(shot, false);
   builder.OneFrame(shot);
   builder.Picture(shot);
+  builder.Wireframe(shot);
   builder.Sphere(shot, "the picture to write; default: the scene's name with .png, in the current folder");
   builder.Progress(shot);
 
@@ -325,6 +363,7 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   builder.Scene(render, false);
   builder.Length(render, "default 300");
   builder.Picture(render);
+  builder.Wireframe(render);
   builder.Sphere(render,
                  "NAME.mp4, or a new folder for pictures; default: the scene's name with .mp4, in the current folder");
   builder.Call(render, "--fps", "Pictures per second of video; default 30", "N", "Output",
@@ -337,6 +376,18 @@ void AddVerbs(CLI::App& app, Builder& builder) {
                           "  percale view --log session.log\n"
                           "  percale replay session.log\n");
   builder.Log(replay);
+  CLI::App& figures = verb(
+      Verb::Figures, "Makes all 49 figures of the course's write-up, and a page that shows and measures them",
+      "  percale figures\n"
+      "  percale figures --only 19-22,31 --size 512x400 -o few\n"
+      "Writes figure_01.png to figure_49.png, index.html (one page that holds all of it) and figures.json. What is\n"
+      "in the folder already and would come out the same is kept. Claims are judged once all figures are there.\n");
+  figures.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR")->group("Output");
+  builder.Folder(figures);
+  builder.Only(figures);
+  builder.Size(figures);
+  builder.Threads(figures, "Output");
+  builder.Progress(figures);
 
   CLI::App& check = verb(Verb::Check, "Reports every problem of scene files",
                          "  percale check scene/*.json\n"

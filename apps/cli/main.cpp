@@ -23,6 +23,8 @@ int RunVerb(const Options& options) {
       return Render(options);
     case Verb::Replay:
       return Replay(options);
+    case Verb::Figures:
+      return Figures(options);
     case Verb::Check:
       return Check(options);
     case Verb::Info:

@@ -21,7 +21,7 @@ enum ExitCode : int {
   kInterrupted = 130  ///< Ctrl+C; what was done is kept.
 };
 
-enum class Verb { View, Simulate, Shot, Render, Replay, Check, Info, Doctor, Bench, Version };
+enum class Verb { View, Simulate, Shot, Render, Figures, Replay, Check, Info, Doctor, Bench, Version };
 enum class ProgressKind { Automatic, Bar, Json, None };
 
 /// A parameter of a shader from the command line.
@@ -61,9 +61,13 @@ struct Options {
   std::optional<double> azimuth, elevation, distance;  ///< --camera [degree, degree, m]
   std::optional<std::vector<double>> target;           ///< --target, three numbers [m]
 
+  bool wireframe = false;  ///< --wireframe: the springs over the surface.
+
   std::string log;                ///< view --log
   double historyMegabytes = 256;  ///< view --history
   bool keys = false;              ///< view --keys
+
+  std::vector<int> figures;  ///< figures --only, ascending; empty: all.
 
   bool schema = false;     ///< check --schema
   std::string benchmark;   ///< bench NAME; empty: springs.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 #include "apps/cli/run.h"
 #include "core/text.h"
@@ -24,6 +25,7 @@ View MakeView(const Options& options, const Scene& scene) {
   View view = View::ForScene(SeenScene(options, scene));
   view.sphereLatitudes = options.latitudes;
   view.sphereLongitudes = options.longitudes;
+  view.wireframe = options.wireframe;
   return view;
 }
 
@@ -104,22 +106,26 @@ std::optional<Image> Paint(Studio& studio, const World& world) {
   return std::move(*image);
 }
 
-int WritePicture(Studio& studio, const World& world, const fs::path& file) {
-  const auto image = Paint(studio, world);
-  if (!image) return kInvalid;
-  Scene seen = world.scene();
-  seen.camera = studio.view.camera.Settings();
-  seen.look = studio.view.look;
+Status SavePicture(const fs::path& file, const Image& image, const Scene& scene, const View& view, int frame,
+                   std::vector<PngText> more) {
+  Scene seen = scene;
+  seen.camera = view.camera.Settings();
+  seen.look = view.look;
   PngOptions png;
   png.level = kPngLevel;
   png.text = {{"Software", std::string("Percale ") + PERCALE_VERSION},
               {"percale:scene", FormatScene(seen)},
-              {"percale:frame", std::to_string(world.report().frame)}};
-  if (Status status = WritePng(file, *image, png); !status) {
-    PrintDiagnostics(status.diagnostics());
-    return kFailed;
-  }
-  return kDone;
+              {"percale:frame", std::to_string(frame)}};
+  png.text.insert(png.text.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  return WritePng(file, image, png);
+}
+
+int WritePicture(Studio& studio, const World& world, const fs::path& file) {
+  const auto image = Paint(studio, world);
+  if (!image) return kInvalid;
+  const Status status = SavePicture(file, *image, world.scene(), studio.view, world.report().frame);
+  PrintDiagnostics(status.diagnostics());
+  return status ? kDone : kFailed;
 }
 
 fs::path DefaultOutput(const Session& session, const char* extension) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/cli/options.h"
 #include "apps/cli/session.h"
@@ -35,6 +36,10 @@ std::variant<Studio, int> OpenStudio(const Options& options, const Session& sess
 /// Draws the World as it stands; prints warnings and errors. Nothing when it failed (kInvalid: the
 /// shader is at fault).
 std::optional<Image> Paint(Studio& studio, const World& world);
+
+/// Writes a PNG file that holds scene, camera and frame as texts, and `more` behind them.
+Status SavePicture(const std::filesystem::path& file, const Image& image, const Scene& scene, const View& view,
+                   int frame, std::vector<PngText> more = {});
 
 /// Paints the World and writes a PNG file that holds scene, camera and frame as texts. Returns the
 /// exit code.

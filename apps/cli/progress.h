@@ -12,7 +12,8 @@ namespace percale::cli {
 
 class Progress {
  public:
-  /// `frames` is the most that will run. `what` stands before the bar: "simulate".
+  /// `frames` is the most that will run, or the whole of what is counted otherwise. `what` stands
+  /// before the bar: "simulate".
   Progress(ProgressKind kind, std::string what, int frames);
   ~Progress();  ///< Clears the bar.
   Progress(const Progress&) = delete;
@@ -23,10 +24,17 @@ class Progress {
   /// The last frame is done, however it came to be the last.
   void Finish(const StepReport& report);
 
+  /// The same for what is no run of a single World.
+  void Update(int done);
+  void Finish(int done);
+
  private:
   using Clock = std::chrono::steady_clock;
-  void ShowBar(const StepReport& report);
+  bool IsDue();
+  double Elapsed() const;
+  void ShowBar(int done);
   void ShowJson(const StepReport& report, bool last);
+  void ShowJson(int done, bool last);
 
   ProgressKind kind_;
   std::string what_;

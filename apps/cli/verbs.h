@@ -11,6 +11,7 @@ int Simulate(const Options& options);
 int Shot(const Options& options);
 int Render(const Options& options);
 int Replay(const Options& options);
+int Figures(const Options& options);
 int Check(const Options& options);
 int Info(const Options& options);
 int Doctor(const Options& options);
