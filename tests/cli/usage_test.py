@@ -6,7 +6,7 @@ import unittest
 
 from program import ROOT, ProgramTest, cloth
 
-VERBS = ["view", "simulate", "shot", "render", "check", "info", "doctor", "bench", "version"]
+VERBS = ["view", "simulate", "shot", "render", "figures", "check", "info", "doctor", "bench", "version"]
 
 
 class Usage(ProgramTest):
@@ -55,6 +55,15 @@ class Usage(ProgramTest):
         self.usage("render", scene, "-o", "a.avi", expect=".mp4")
         self.usage("render", scene, "--fps", 0, expect="--fps")
         self.assertEqual(self.files(), ["scene.json"])
+
+    def test_wrong_figures(self):
+        for bad in ("0", "50", "a", "22-19", "", "1,", "1-2-3", "-3", "1.5"):
+            self.usage("figures", "--only", bad, expect=["--only", "1..49", "19-22,31"])
+        self.usage("figures", "--size", "0x0", expect="--size")
+        self.usage("figures", "-o", "", expect="-o")
+        self.usage("figures", "-r", "nowhere", expect="shaders/")
+        self.usage("figures", "--shader", "Phong", expect="no option of figures; it belongs to view, shot, render")
+        self.assertEqual(self.files(), [])
 
     def test_the_course_flags(self):
         self.usage("-a", "x", expect="-a")
@@ -263,6 +272,7 @@ class WithoutGraphics(ProgramTest):
         for verb, output in (("shot", "a.png"), ("render", "a.mp4")):
             done = self.run_program(verb, scene, "-o", output, code=5)
             self.assertIn("install", done.stderr)
+        self.run_program("figures", "-r", ROOT, "-o", "gallery", code=5)
         self.assertEqual(self.files(), ["scene.json"])
 
     def test_simulate_needs_none(self):

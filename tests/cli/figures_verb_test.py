@@ -1,0 +1,70 @@
+"""percale figures as a verb: parts of the whole, what is kept, and what goes wrong. The whole is in figures_test.py."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PERCALE, ROOT, ProgramTest
+
+
+class SomeFigures(ProgramTest):
+    def figures(self, *arguments, **options):
+        return self.run_program("figures", "-r", ROOT, "--size", "64x50", *arguments, **options)
+
+    def test_only(self):
+        done = self.figures("--only", "1,3-4,37")
+        self.assertIn("4 of 49 figures", done.stdout)
+        self.assertEqual([f for f in self.files() if f.endswith(".png")],
+                         [f"figures/figure_{n:02}.png" for n in (1, 3, 4, 37)])
+        page = (self.folder / "figures/index.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count("<figure"), 4)
+        # What is there from before stays on the page, unless it is of another size.
+        self.assertIn("5 of 49 figures, 1 of them drawn now", self.figures("--only", "40").stdout)
+        self.assertIn("1 of 49 figures, 1 of them drawn now", self.figures("--only", "45", "--size", "32x25").stdout)
+
+    def test_the_number_of_threads_makes_no_difference(self):
+        for threads in (1, 3):
+            self.figures("--only", "2,8,23,29", "--threads", threads, "-o", f"with {threads}")
+        for name in ("index.html", "figures.json", "figure_23.png", "figure_29.png"):
+            self.assertEqual((self.folder / "with 1" / name).read_bytes(), (self.folder / "with 3" / name).read_bytes())
+
+    def test_a_changed_shader_is_noticed(self):
+        for name in ("shaders", "textures", "scene"):
+            shutil.copytree(ROOT / name, self.folder / name)
+        only = ("figures", "-r", ".", "--size", "64x50", "--only", "1", "-o", "out")
+        self.run_program(*only)
+        self.assertIn("0 of them drawn now", self.run_program(*only).stdout)
+        shader = self.folder / "shaders/Wireframe.frag"
+        shader.write_text(shader.read_text() + "// changed\n")
+        self.assertIn("1 of them drawn now", self.run_program(*only).stdout)
+
+    def test_unwritable(self):
+        self.write("file", "")
+        for output in ("file", "file/below"):
+            self.assertIn("file", self.figures("--only", "1", "-o", output, code=1).stderr)
+        self.assertEqual(self.files(), ["file"])
+
+    @unittest.skipIf(os.name == "nt", "POSIX signals")
+    def test_interrupt_keeps_what_was_done(self):
+        process = subprocess.Popen([os.path.abspath(PERCALE), "figures", "-r", str(ROOT), "--size", "64x50", "--threads",
+                                    "1", "--only", "1-23", "-o", "out", "--progress", "json"], cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment, text=True,
+                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        deadline = time.monotonic() + 120
+        while not list(self.folder.glob("out/figure_*.png")) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, out + err)
+        self.assertIn("interrupted", err)
+        kept = len(list(self.folder.glob("out/figure_*.png")))
+        self.assertGreater(kept, 0)
+        self.assertIn(f"{kept} of 49 figures", out)
+        self.assertEqual([f for f in self.files() if "tmp" in f], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
