@@ -11,12 +11,15 @@ namespace percale::springs {
 
 /// The rest length that stands where a point creates no spring of a kind.
 inline constexpr double kNoSpringRest = 1e300;
-/// Kernels read this many numbers after a sheet's positions, rest lengths and forces, ...
+/// Kernels read this many numbers after a sheet's positions, rest lengths and forces, and before its rest
+/// lengths and forces, ...
 inline constexpr int kGridPad = 8;
-/// ... and this many positions before it, for the springs that its first rows do not have. A multiple of
-/// kGridPad.
+inline int RoundUpToPad(int count) {
+  return (count + kGridPad - 1) / kGridPad * kGridPad;
+}
+/// ... and this many positions before it, for the springs that its first rows do not have.
 inline int GridPadding(int numWidth) {
-  return (2 * numWidth + 2 + kGridPad - 1) / kGridPad * kGridPad;
+  return RoundUpToPad(2 * numWidth) + kGridPad;
 }
 
 /// Forces and Verlet integration over some rows of one cloth.
@@ -132,15 +135,13 @@ struct Kernels {
   std::int64_t (*collidePlane)(const ColliderArgs&);
 };
 
-/// `integrate` lets complete forces wait while it looks at about this many more points, ...
-inline constexpr int kForceDelay = 4 * kGridPad;
-/// ... and keeps sums of forces for this many, nine numbers each.
+/// `integrate` keeps sums of forces for this many points, six numbers each.
 inline int ForceRingSize(int numWidth) {
-  return (numWidth + kGridPad - 1) / kGridPad * kGridPad + kForceDelay + 2 * kGridPad;
+  return RoundUpToPad(numWidth) + kGridPad;
 }
 /// Doubles of scratch that `integrate` needs for a cloth of that width; a multiple of kGridPad.
 inline int IntegrateScratch(int numWidth) {
-  return 9 * (ForceRingSize(numWidth) + kGridPad);
+  return 6 * (ForceRingSize(numWidth) + kGridPad);
 }
 
 /// All that the processor can run, the plain ones first and the fastest last.

@@ -77,7 +77,7 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
   double shortest = kInfinity;
   for (int kind = 0; kind < kSpringKinds; ++kind) {
     const auto [di, dj] = kSpringSteps[kind];
-    sheet.rest[kind].assign(Index(model.PointCount() + kGridPad), kNoSpringRest);
+    sheet.rest[kind].assign(Index(kGridPad + model.PointCount() + kGridPad), kNoSpringRest);
     sheet.nearSquared[kind].assign(Index(model.PointCount() + kGridPad), kInfinity);
     for (int j = 0; j < model.numHeight; ++j) {
       for (int i = 0; i < model.numWidth; ++i) {
@@ -86,7 +86,7 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
         sheet.kinds[Index(p)] |= static_cast<std::uint8_t>(1u << kind);
         const double rest = Length(model.start[Index(p + dj * model.numWidth + di)] - model.start[Index(p)]);
         const double near = (1 - kNearShare) * kStretchLimit * rest;
-        sheet.rest[kind][Index(p)] = rest;
+        sheet.rest[kind][Index(kGridPad + p)] = rest;
         sheet.nearSquared[kind][Index(p)] = near * near;
         shortest = std::min(shortest, rest);
       }
@@ -240,7 +240,7 @@ Vec3 SpringsEngine::MotionOf(const PinnedPoint& pin, double time) const {
 
 /// Several winds at once act as one: their drags add, and so do their pushes.
 void SpringsEngine::ComputeWind(double time, std::span<const Gust> gusts) {
-  for (auto& axis : windForce_) axis.resize(Index(pointCount_ + kGridPad));
+  for (auto& axis : windForce_) axis.resize(Index(kGridPad + pointCount_ + kGridPad));
   const WindSettings& wind = scene_.wind;
   double drag = wind.drag;
   Vec3 air = wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
@@ -254,7 +254,8 @@ void SpringsEngine::ComputeWind(double time, std::span<const Gust> gusts) {
     drag += added;
   }
   const auto position = [&](int p) { return Get(positions_, p); };
-  double* const windForces[3] = {windForce_[0].data(), windForce_[1].data(), windForce_[2].data()};
+  double* const windForces[3] = {windForce_[0].data() + kGridPad, windForce_[1].data() + kGridPad,
+                                 windForce_[2].data() + kGridPad};
   ForRowChunks([&](const Sheet& sheet, int rowBegin, int rowEnd, int) {
     for (int j = rowBegin; j < rowEnd; ++j) {
       const int row = sheet.firstPoint + j * sheet.numWidth;
@@ -293,10 +294,10 @@ bool SpringsEngine::ApplyForces(double time, std::span<const Gust> gusts) {
       args.x[axis] = positions_[axis] + sheet.firstPoint;
       args.previous[axis] = previous_[axis] + sheet.firstPoint;
       args.weight[axis] = weight[axis];
-      args.extraForce[axis] = windy ? windForce_[axis].data() + sheet.firstPoint : nullptr;
+      args.extraForce[axis] = windy ? windForce_[axis].data() + kGridPad + sheet.firstPoint : nullptr;
     }
     for (int kind = 0; kind < kSpringKinds; ++kind) {
-      args.rest[kind] = sheet.rest[kind].data();
+      args.rest[kind] = sheet.Rest(kind);
       args.stiffness[kind] = sheet.stiffness[kind];
     }
     args.keep = sheet.keep;
@@ -520,7 +521,7 @@ void SpringsEngine::LimitStrain() {
     args.pointCount = sheet.PointCount();
     for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis] + sheet.firstPoint;
     args.fixed = fixed_.data() + sheet.firstPoint;
-    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.rest[kind].data();
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.Rest(kind);
     args.limit = kStretchLimit;
     args.kinds = sheet.kinds.data();
     args.marks = sheet.nearKinds.data();
@@ -573,7 +574,7 @@ Stretch SpringsEngine::GreatestStretch() const {
     args.numWidth = sheet.numWidth;
     args.pointCount = sheet.PointCount();
     for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis] + sheet.firstPoint;
-    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.rest[kind].data();
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = sheet.Rest(kind);
     const GreatestStretchResult found = kernels_.greatestStretch(args);
     if (found.squaredRatio > greatest.ratio) {
       greatest = {found.squaredRatio, {static_cast<int>(s), static_cast<int>(found.point)}};

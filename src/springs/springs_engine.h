@@ -47,6 +47,7 @@ struct Sheet {
   int rowsPerChunk = 1;
   int firstChunk = 0;
   int PointCount() const { return numWidth * numHeight; }
+  const double* Rest(int kind) const { return rest[kind].data() + kGridPad; }  ///< Of the first point.
 };
 
 class SpringsEngine {

@@ -66,13 +66,13 @@ inline std::int64_t Step(int numWidth, int kind) {
   return std::int64_t{kSpringSteps[kind].dj} * numWidth + kSpringSteps[kind].di;
 }
 
-/// Rest lengths, one array per kind.
+/// Rest lengths, one array per kind, with room before and behind.
 struct RestLengths {
   explicit RestLengths(int count) {
-    for (auto& kind : store) kind.assign(At(count + springs::kGridPad), springs::kNoSpringRest);
+    for (auto& kind : store) kind.assign(At(2 * springs::kGridPad + count), springs::kNoSpringRest);
   }
-  std::vector<double>& operator[](int kind) { return store[kind]; }
-  const std::vector<double>& operator[](int kind) const { return store[kind]; }
+  double* operator[](int kind) { return store[kind].data() + springs::kGridPad; }
+  const double* operator[](int kind) const { return store[kind].data() + springs::kGridPad; }
 
   std::vector<double> store[kSpringKinds];
 };

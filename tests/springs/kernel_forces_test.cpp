@@ -52,7 +52,7 @@ struct Sheet {
       args.extraForce[axis] = windy ? extra.axis(axis) : nullptr;
     }
     for (int kind = 0; kind < kSpringKinds; ++kind) {
-      args.rest[kind] = rest[kind].data();
+      args.rest[kind] = rest[kind];
       args.stiffness[kind] = stiffness[kind];
     }
     args.keep = keep;

@@ -74,7 +74,7 @@ struct Sheet {
     args.pointCount = count;
     for (int axis = 0; axis < 3; ++axis) args.x[axis] = x.axis(axis);
     args.fixed = fixed.data();
-    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = rest[kind].data();
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = rest[kind];
     args.limit = kLimit;
     args.kinds = kinds.data();
     args.marks = marks.data();
@@ -257,7 +257,7 @@ TEST_CASE("the greatest stretch is that of a plain loop, and the first of its po
           args.numWidth = numWidth;
           args.pointCount = s.count;
           for (int axis = 0; axis < 3; ++axis) args.x[axis] = s.x.axis(axis);
-          for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = s.rest[kind].data();
+          for (int kind = 0; kind < kSpringKinds; ++kind) args.rest[kind] = s.rest[kind];
           const GreatestStretchResult found = kernels->greatestStretch(args);
           REQUIRE(found.squaredRatio == greatest);
           REQUIRE(found.point == point);
