@@ -8,6 +8,7 @@ namespace percale {
 namespace {
 
 constexpr int kSmallestTable = 6;  // bits
+constexpr int kMostEmpty = 5;      // at most one bucket of that many is empty: readers stumble over them
 // Room of a bucket: more than its members, so that few outgrow it.
 constexpr std::int32_t Room(std::int32_t members) {
   return (members + 1 + BoxMap::kPadding - 1) / BoxMap::kPadding * BoxMap::kPadding;
@@ -28,7 +29,7 @@ void BoxMap::Reserve(int points) {
   table_.assign(std::size_t{1} << bits, {});
   tableBits_ = kSmallestTable;
   build_ = 0;
-  bucketCount_ = 0;
+  bucketCount_ = emptyCount_ = 0;
   bucketOf_.resize(count);
   first_.resize(2 * count + 1);
   count_.resize(2 * count + 1);
@@ -92,11 +93,12 @@ bool BoxMap::FindBuckets(std::span<const std::uint64_t> keys) {
     ++count_[Index(bucket)];
   }
   bucketCount_ = buckets;
+  emptyCount_ = 0;
   return true;
 }
 
 void BoxMap::Update(std::span<const std::uint64_t> keys, std::span<const std::int32_t> changed) {
-  if (changed.size() > keys.size() / 8) {
+  if (changed.size() > keys.size() / 8 || emptyCount_ > bucketCount_ / kMostEmpty) {
     Build(keys);
     return;
   }
@@ -112,6 +114,7 @@ void BoxMap::Update(std::span<const std::uint64_t> keys, std::span<const std::in
 void BoxMap::Remove(std::int32_t bucket, std::int32_t point) {
   std::int32_t* at = members_.data() + first_[Index(bucket)];
   std::int32_t* const last = at + --count_[Index(bucket)];
+  if (at == last) ++emptyCount_;
   while (*at != point) ++at;  // most buckets have fewer members than a search would be worth
   for (; at < last; ++at) at[0] = at[1];
   Pad(bucket);
@@ -124,8 +127,10 @@ bool BoxMap::Insert(std::uint64_t key, std::int32_t point) {
     if (bucketCount_ == std::int32_t{1} << (tableBits_ - 1) || Index(bucketCount_) == first_.size()) return false;
     slot = {key, build_, bucketCount_++};
     first_[Index(slot.bucket)] = count_[Index(slot.bucket)] = capacity_[Index(slot.bucket)] = 0;
+    ++emptyCount_;
   }
   const std::size_t b = Index(slot.bucket);
+  if (count_[b] == 0) --emptyCount_;
   if (count_[b] == capacity_[b]) {
     const std::int32_t room = Room(2 * count_[b]);
     if (Index(membersEnd_ + room) > members_.size()) return false;

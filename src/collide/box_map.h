@@ -51,6 +51,7 @@ class BoxMap {
   int tableBits_ = 0;        // 2^tableBits_ of its slots are in use; as few as serve, so that they stay in cache
   std::uint32_t build_ = 0;
   int bucketCount_ = 0;
+  int emptyCount_ = 0;                  // of the buckets
   std::vector<std::int32_t> bucketOf_;  // per point
   std::vector<std::int32_t> first_;     // per bucket: index of its first member
   std::vector<std::int32_t> count_;     // per bucket: its members
