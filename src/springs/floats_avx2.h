@@ -7,6 +7,9 @@ struct FloatPack {
 inline FloatPack LoadFloats(const float* p) {
   return {_mm256_loadu_ps(p)};
 }
+inline void StoreFloats(float* p, FloatPack a) {
+  _mm256_storeu_ps(p, a.v);
+}
 inline FloatPack AllFloats(float s) {
   return {_mm256_set1_ps(s)};
 }

@@ -66,22 +66,30 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
   return changed;
 }
 
+constexpr float kFar = 1e15f;  // m; where points stand that do not exist
+
 /// Which points of a bucket may come too close to which others while they move.
 struct NearPoints {
-  static constexpr int kMost = 64;
-  const std::int32_t* members;
-  std::uint64_t todo;         // a bit for each member that is near another
-  std::uint64_t near[kMost];  // per member a bit for every other that is near it
+  static constexpr int kMost = 64;  // members of a bucket
+  static constexpr int kMostOthers = 7;
+  /// A point that is near others: these in order, and then itself.
+  struct alignas(32) Row {
+    std::int32_t others[kMostOthers], point;
+  };
+  Row rows[kMost + kMost / (kMostOthers + 1)];  // PutMarked writes farther than a row
+  int others[kMost];                            // per row, how many there are
+  int next = 0, end = 0;                        // rows whose points did not move yet
 
-  bool Find(const BucketArgs& a, const std::int32_t* bucketMembers, int count, float squared);
+  bool Find(const BucketArgs& a, const std::int32_t* members, int count, float squared);
 };
 
-/// Returns whether there are any.
-inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* bucketMembers, int count, float squared) {
-  float x[3][kMost];  // relative to the first
+/// Returns false when a point is near more others than a row can hold.
+inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, int count, float squared) {
+  alignas(64) float x[3][kMost];  // relative to the first
+  next = end = 0;
   const auto gather = [&](int m) {
     for (int axis = 0; axis < 3; ++axis) {
-      GatherFloats(a.x[axis], bucketMembers + m, count - m, a.x[axis][bucketMembers[0]], x[axis] + m);
+      GatherFloats(a.x[axis], members + m, count - m, a.x[axis][members[0]], x[axis] + m);
     }
   };
   const auto block = [&](int m) {
@@ -96,30 +104,37 @@ inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* bucketMemb
   // Most buckets are few points that lie flat, with no two near each other.
   gather(0);
   if (count <= kFloatLanes) {
-    if (anyWithin(block(0)) == 0) return false;
+    if (anyWithin(block(0)) == 0) return true;
   } else if (count == kFloatLanes + 1) {  // three by three
-    const std::int32_t last = bucketMembers[kFloatLanes];
+    const std::int32_t last = members[kFloatLanes];
     for (int axis = 0; axis < 3; ++axis) {
-      x[axis][kFloatLanes] = static_cast<float>(a.x[axis][last] - a.x[axis][bucketMembers[0]]);
+      x[axis][kFloatLanes] = static_cast<float>(a.x[axis][last] - a.x[axis][members[0]]);
     }
     const FloatPack3 points = block(0);
-    if ((anyWithin(points) | Within(points, alone(kFloatLanes), squared)) == 0) return false;
-    gather(kFloatLanes);
-  } else {
-    for (int m = kFloatLanes; m < count; m += kFloatLanes) gather(m);
+    if ((anyWithin(points) | Within(points, alone(kFloatLanes), squared)) == 0) return true;
   }
-  members = bucketMembers;
-  todo = 0;
-  for (int m = 0; m < count; ++m) {
-    const FloatPack3 point = alone(m);
+  int m = kFloatLanes;
+  for (; m < count; m += kFloatLanes) gather(m);
+  for (int axis = 0; axis < 3 && m % kWideLanes != 0; ++axis) StoreFloats(x[axis] + m, AllFloats(kFar));
+  std::uint64_t near[kMost], todo = 0;
+  for (m = 0; m < count; ++m) {
     std::uint64_t bits = 0;
-    for (int other = 0; other < count; other += kFloatLanes) {
-      bits |= std::uint64_t{Within(block(other), point, squared)} << other;
+    for (int other = 0; other < count; other += kWideLanes) {
+      bits |= std::uint64_t{AtMost(LoadWide(x[0] + other) - AllWide(x[0][m]), LoadWide(x[1] + other) - AllWide(x[1][m]),
+                                   LoadWide(x[2] + other) - AllWide(x[2][m]), squared)}
+              << other;
     }
     near[m] = bits & ~(std::uint64_t{1} << m);
-    todo |= std::uint64_t{near[m] != 0} << m;
+    todo |= near[m];
   }
-  return todo != 0;
+  int most = 0;
+  for (; todo != 0; todo &= todo - 1, ++end) {
+    m = LowestBit(todo);
+    PutMarked(members, count, near[m], members[m], rows[end].others);
+    others[end] = BitCount(near[m]);
+    most = others[end] > most ? others[end] : most;
+  }
+  return most <= kMostOthers;
 }
 
 /// The sum of pushes on one point.
@@ -189,87 +204,63 @@ std::int64_t SeparateMany(const BucketArgs& a, const std::int32_t* members, int 
 /// waits for the one before it; points of different buckets go side by side.
 struct PushLanes {
   NearPoints buckets[kLanes];
-  std::int32_t others[NearPoints::kMost][kLanes];
+  Pack pushes = All(0);  // per lane
 
-  PushLanes() {
-    for (NearPoints& bucket : buckets) bucket.todo = 0;
-  }
-
-  /// Moves the next point of every bucket that has one left. Returns how many pushes that took.
+  /// Moves the next point of every bucket that has one left. Returns how many pushes that took beside those
+  /// that it adds to `pushes`.
   std::int64_t Turn(const BucketArgs& a);
-  std::int64_t TurnOneByOne(const BucketArgs& a, const std::int32_t points[kLanes], const int count[kLanes]);
 };
 
-/// The same for points of which some coincide.
-inline std::int64_t PushLanes::TurnOneByOne(const BucketArgs& a, const std::int32_t points[kLanes],
-                                            const int count[kLanes]) {
-  std::int64_t contacts = 0;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    std::int32_t near[NearPoints::kMost];
-    for (int k = 0; k < count[lane]; ++k) near[k] = others[k][lane];
-    if (count[lane] > 0) contacts += PushApart(a, points[lane], near, count[lane]);
-  }
-  return contacts;
-}
-
 inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
-  constexpr int kOften = 2;  // most points have no more others near them
-  std::int32_t points[kLanes];
-  int count[kLanes], most = kOften;
-  double counts[kLanes];
+  constexpr int kPoint = NearPoints::kMostOthers;  // in a row
   // Lanes that have none left take a point that no other thread has: the first lane was filled first.
-  const std::int32_t idle = buckets[0].members[0];
+  NearPoints::Row idle;
+  idle.point = buckets[0].rows[0].point;
+  for (std::int32_t& other : idle.others) other = idle.point;
+  const std::int32_t* rows[kLanes];
+  int count[kLanes], most = 0, total = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
     NearPoints& bucket = buckets[lane];
-    std::uint64_t bits = 0;
-    points[lane] = idle;
-    if (bucket.todo != 0) {
-      const int m = LowestBit(bucket.todo);
-      bucket.todo &= bucket.todo - 1;
-      bits = bucket.near[m];
-      points[lane] = bucket.members[m];
-    }
-    count[lane] = BitCount(bits);
-    counts[lane] = count[lane];
-    for (int k = 0; k < kOften; ++k) {
-      others[k][lane] = bits != 0 ? bucket.members[LowestBit(bits)] : points[lane];
-      bits &= bits - 1;
-    }
-    for (int k = kOften; bits != 0; ++k, bits &= bits - 1) others[k][lane] = bucket.members[LowestBit(bits)];
+    const bool any = bucket.next < bucket.end;
+    rows[lane] = any ? bucket.rows[bucket.next].others : idle.others;
+    count[lane] = any ? bucket.others[bucket.next] : 0;
+    bucket.next += any ? 1 : 0;
     most = count[lane] > most ? count[lane] : most;
-  }
-  for (int lane = 0; lane < kLanes && most > kOften; ++lane) {
-    for (int k = count[lane] > kOften ? count[lane] : kOften; k < most; ++k) others[k][lane] = points[lane];
+    total += count[lane];
   }
 
-  const Pack3 x = Gather3(a.x, points);
-  const Pack near = Load(counts);
+  const Pack3 x = GatherRows3(a.x, rows, kPoint);
   Pack3 sum = Zero3();
-  Pack pushes = All(0);
+  Pack pushed = All(0);
+  int same = 0;
   for (int k = 0; k < most; ++k) {
-    const Mask valid = near > All(k);
-    const Pack3 d = x - Gather3(a.x, others[k]);
+    const Pack3 d = x - GatherRows3(a.x, rows, k);
     const Pack distance = Sqrt(SquaredLength(d));
-    const Pack apart =
-        a.sameThickness ? All(a.greatestApart) : Gather(a.thickness, points) + Gather(a.thickness, others[k]);
+    const Pack apart = a.sameThickness ? All(a.greatestApart)
+                                       : GatherRows(a.thickness, rows, kPoint) + GatherRows(a.thickness, rows, k);
+    const Mask valid = distance > All(0);  // else it is the point itself, or one that coincides with it
+    same += kLanes - BitCount(Bits(valid));
     const Mask push = valid & (distance <= apart);
-    if (Bits(push & (distance <= All(0))) != 0) return TurnOneByOne(a, points, count);
     sum = sum + d * Where(push, (apart - distance) / distance);
-    pushes = pushes + Where(push, All(1));
+    pushed = pushed + Where(push, All(1));
   }
-  const Mask moves = pushes > All(0);
-  const Pack share = pushes * All(a.stepsPerFrame);
-  double to[3][kLanes], number[kLanes];
-  Store(to[0], x.x + sum.x / share), Store(to[1], x.y + sum.y / share), Store(to[2], x.z + sum.z / share);
-  Store(number, pushes);
-  std::int64_t contacts = 0;
-  for (unsigned bits = Bits(moves); bits != 0; bits &= bits - 1) {
-    const int lane = LowestBit(bits);
-    contacts += static_cast<std::int64_t>(number[lane]);
-    if (a.fixed[points[lane]]) continue;
-    for (int axis = 0; axis < 3; ++axis) a.x[axis][points[lane]] = to[axis][lane];
+  if (same != most * kLanes - total) {  // some coincide
+    std::int64_t contacts = 0;
+    for (int lane = 0; lane < kLanes; ++lane) contacts += PushApart(a, rows[lane][kPoint], rows[lane], count[lane]);
+    return contacts;
   }
-  return contacts;
+  pushes = pushes + pushed;
+  const Mask moves = pushed > All(0);
+  const Pack share = pushed * All(a.stepsPerFrame);
+  const Pack3 to = Select(moves, {x.x + sum.x / share, x.y + sum.y / share, x.z + sum.z / share}, x);
+  double lanes[3][kLanes];
+  Store(lanes[0], to.x), Store(lanes[1], to.y), Store(lanes[2], to.z);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const std::int32_t point = rows[lane][kPoint];
+    if (count[lane] == 0 || a.fixed[point]) continue;
+    for (int axis = 0; axis < 3; ++axis) a.x[axis][point] = lanes[axis][lane];
+  }
+  return 0;
 }
 
 constexpr double kMostSpan = 1e9;  // m; far below the numbers that GatherFloats puts into empty lanes
@@ -289,9 +280,10 @@ std::int64_t SeparateBuckets(const BucketArgs& a) {
       const std::int32_t* members = a.members + a.first[bucket];
       const int count = a.count[bucket++];
       if (count < 2) continue;
-      if (count > mostNear) {
+      if (count > mostNear || !lane.Find(a, members, count, nearSquared)) {
         contacts += SeparateMany(a, members, count, farthest);
-      } else if (lane.Find(a, members, count, nearSquared)) {
+        lane.end = 0;
+      } else if (lane.end > 0) {
         return true;
       }
     }
@@ -299,8 +291,11 @@ std::int64_t SeparateBuckets(const BucketArgs& a) {
   };
   for (bool any = true; any;) {
     any = false;
-    for (NearPoints& lane : lanes.buckets) any |= lane.todo != 0 || fill(lane);
+    for (NearPoints& lane : lanes.buckets) any |= lane.next < lane.end || fill(lane);
     if (any) contacts += lanes.Turn(a);
   }
+  double pushes[kLanes];
+  Store(pushes, lanes.pushes);
+  for (const double count : pushes) contacts += static_cast<std::int64_t>(count);
   return contacts;
 }

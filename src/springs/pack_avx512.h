@@ -175,3 +175,33 @@ inline bool QuickSqrt(const Pack a[6], Pack roots[6]) {
   for (int s = 0; s < kQuick; ++s) roots[s] = {_mm512_fmadd_pd(error[s], halfInverse[s], root[s])};
   return true;
 }
+
+/// Sixteen floats for tests that only rule out; elsewhere the eight of floats_avx2.h.
+struct WideFloats {
+  __m512 v;
+};
+constexpr int kWideLanes = 16;
+inline WideFloats LoadWide(const float* p) {
+  return {_mm512_loadu_ps(p)};
+}
+inline WideFloats AllWide(float s) {
+  return {_mm512_set1_ps(s)};
+}
+inline WideFloats operator-(WideFloats a, WideFloats b) {
+  return {_mm512_sub_ps(a.v, b.v)};
+}
+inline unsigned AtMost(WideFloats x, WideFloats y, WideFloats z, float squared) {
+  const __m512 sum = _mm512_fmadd_ps(x.v, x.v, _mm512_fmadd_ps(y.v, y.v, _mm512_mul_ps(z.v, z.v)));
+  return _mm512_cmp_ps_mask(sum, _mm512_set1_ps(squared), _CMP_LE_OQ);
+}
+/// Those of the first `count` numbers that have a bit, in order, and behind them `rest`, up to eight numbers.
+/// More than eight need not be right; room for `count` and for eight is written to.
+inline void PutMarked(const std::int32_t* from, int count, std::uint64_t bits, std::int32_t rest, std::int32_t* to) {
+  for (int base = 0; base < count; base += 16, bits >>= 16) {
+    const auto mask = static_cast<__mmask16>(bits);
+    const __m512i marked =
+        _mm512_mask_compress_epi32(_mm512_set1_epi32(rest), mask, _mm512_maskz_loadu_epi32(mask, from + base));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_castsi512_si256(marked));
+    to += BitCount(mask);
+  }
+}

@@ -146,6 +146,9 @@ inline FloatPack EachFloat(F f) {
 inline FloatPack LoadFloats(const float* p) {
   return EachFloat([&](int i) { return p[i]; });
 }
+inline void StoreFloats(float* p, FloatPack a) {
+  for (int i = 0; i < 8; ++i) p[i] = a.v[i];
+}
 inline FloatPack AllFloats(float s) {
   return EachFloat([&](int) { return s; });
 }
