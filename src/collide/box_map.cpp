@@ -35,7 +35,7 @@ void BoxMap::Reserve(int points) {
   count_.resize(2 * count + 1);
   capacity_.resize(2 * count + 1);
   static_assert(Room(1) <= kMostRoom && Room(2) <= 2 * kMostRoom);
-  members_.assign(kAllRoom * count, 0);
+  members_.assign(kAllRoom * count + 1, 0);  // `Remove` reads one more than the last bucket's room
 }
 
 void BoxMap::Build(std::span<const std::uint64_t> keys) {
@@ -52,12 +52,18 @@ void BoxMap::Build(std::span<const std::uint64_t> keys) {
     const std::size_t b = Index(bucketOf_[p]);
     members_[Index(first_[b] + count_[b]++)] = static_cast<std::int32_t>(p);
   }
-  for (std::int32_t b = 0; b < bucketCount_; ++b) Pad(b);
+  for (std::size_t b = 0; b < Index(bucketCount_); ++b) SetCount(b, count_[b]);
 }
 
-void BoxMap::Pad(std::int32_t bucket) {
-  std::int32_t* const members = members_.data() + first_[Index(bucket)];
-  for (std::int32_t i = count_[Index(bucket)]; i % kPadding != 0; ++i) members[i] = members[0];
+// Loops over members go by whole blocks: nobody can predict how many there are.
+
+/// Sets a bucket's number of members, and pads them.
+void BoxMap::SetCount(std::size_t bucket, std::int32_t count) {
+  count_[bucket] = count;
+  std::int32_t* const members = members_.data() + first_[bucket];
+  std::int32_t* const last = members + (count > 0 ? count - 1 : 0) / kPadding * kPadding;
+  const std::int32_t padding = members[0], left = count - static_cast<std::int32_t>(last - members);
+  for (std::int32_t i = 0; i < kPadding; ++i) last[i] = i < left ? last[i] : padding;
 }
 
 /// Where the key is, or the empty slot where it goes.
@@ -112,12 +118,15 @@ void BoxMap::Update(std::span<const std::uint64_t> keys, std::span<const std::in
 }
 
 void BoxMap::Remove(std::int32_t bucket, std::int32_t point) {
-  std::int32_t* at = members_.data() + first_[Index(bucket)];
-  std::int32_t* const last = at + --count_[Index(bucket)];
-  if (at == last) ++emptyCount_;
-  while (*at != point) ++at;  // most buckets have fewer members than a search would be worth
-  for (; at < last; ++at) at[0] = at[1];
-  Pad(bucket);
+  const std::size_t b = Index(bucket);
+  const std::int32_t count = count_[b];
+  std::int32_t* const members = members_.data() + first_[b];
+  // Those from the point on give way to the next.
+  for (std::int32_t block = 0; block < count; block += kPadding) {
+    for (std::int32_t i = block; i < block + kPadding; ++i) members[i] = members[i + (members[i] >= point ? 1 : 0)];
+  }
+  SetCount(b, count - 1);
+  emptyCount_ += count == 1 ? 1 : 0;
 }
 
 /// Returns false when there is no room.
@@ -133,18 +142,25 @@ bool BoxMap::Insert(std::uint64_t key, std::int32_t point) {
   if (count_[b] == 0) --emptyCount_;
   if (count_[b] == capacity_[b]) {
     const std::int32_t room = Room(2 * count_[b]);
-    if (Index(membersEnd_ + room) > members_.size()) return false;
+    if (Index(membersEnd_ + room) >= members_.size()) return false;
     std::copy_n(members_.data() + first_[b], count_[b], members_.data() + membersEnd_);
     first_[b] = membersEnd_;
     capacity_[b] = room;
     membersEnd_ += room;
   }
   bucketOf_[Index(point)] = slot.bucket;
-  std::int32_t* const begin = members_.data() + first_[b];
-  std::int32_t* at = begin + count_[b]++;
-  for (; at > begin && at[-1] > point; --at) at[0] = at[-1];
-  *at = point;
-  Pad(slot.bucket);
+  // In order: each place gets the member there, or the point, or the member before it.
+  std::int32_t* const members = members_.data() + first_[b];
+  const std::int32_t count = count_[b];
+  std::int32_t before = -1;
+  for (std::int32_t block = 0; block <= count; block += kPadding) {
+    for (std::int32_t i = block; i < block + kPadding; ++i) {
+      const std::int32_t here = i < count ? members[i] : point;
+      members[i] = std::max(before, std::min(here, point));
+      before = here;
+    }
+  }
+  SetCount(b, count + 1);
   return true;
 }
 

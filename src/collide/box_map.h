@@ -45,7 +45,7 @@ class BoxMap {
   Slot& FindSlot(std::uint64_t key);
   void Remove(std::int32_t bucket, std::int32_t point);
   bool Insert(std::uint64_t key, std::int32_t point);
-  void Pad(std::int32_t bucket);
+  void SetCount(std::size_t bucket, std::int32_t count);
 
   std::vector<Slot> table_;  // open addressing
   int tableBits_ = 0;        // 2^tableBits_ of its slots are in use; as few as serve, so that they stay in cache
