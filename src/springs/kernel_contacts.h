@@ -66,8 +66,6 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
   return changed;
 }
 
-constexpr float kFar = 1e15f;  // m; where points stand that do not exist
-
 /// Which points of a bucket may come too close to which others while they move.
 struct NearPoints {
   static constexpr int kMost = 64;  // members of a bucket
@@ -115,15 +113,16 @@ inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, i
   }
   int m = kFloatLanes;
   for (; m < count; m += kFloatLanes) gather(m);
-  for (int axis = 0; axis < 3 && m % kWideLanes != 0; ++axis) StoreFloats(x[axis] + m, AllFloats(kFar));
   std::uint64_t near[kMost], todo = 0;
   for (m = 0; m < count; ++m) {
     std::uint64_t bits = 0;
-    for (int other = 0; other < count; other += kWideLanes) {
-      bits |= std::uint64_t{AtMost(LoadWide(x[0] + other) - AllWide(x[0][m]), LoadWide(x[1] + other) - AllWide(x[1][m]),
-                                   LoadWide(x[2] + other) - AllWide(x[2][m]), squared)}
+    int other = 0;
+    for (; other + kFloatLanes < count; other += kWideLanes) {
+      bits |= std::uint64_t{AtMost(AllWide(x[0][m]) - LoadWide(x[0] + other), AllWide(x[1][m]) - LoadWide(x[1] + other),
+                                   AllWide(x[2][m]) - LoadWide(x[2] + other), squared)}
               << other;
     }
+    if (other < count) bits |= std::uint64_t{Within(alone(m), block(other), squared)} << other;
     near[m] = bits & ~(std::uint64_t{1} << m);
     todo |= near[m];
   }
