@@ -7,8 +7,9 @@ namespace percale::cli {
 Workers::Workers(std::vector<Work> works, int threads) : works_(std::move(works)) {
   std::stable_sort(works_.begin(), works_.end(), [](const Work& a, const Work& b) { return a.cost > b.cost; });
   for (const Work& work : works_) cost_ += work.cost;
-  running_ = std::min(works_.size(), std::size_t(std::max(1, threads)));
-  for (std::size_t i = 0; i < running_; ++i) threads_.emplace_back([this] { Run(); });
+  const std::size_t count = std::min(works_.size(), std::size_t(std::max(1, threads)));
+  running_ = count;  // the first may be done before the last has started
+  for (std::size_t i = 0; i < count; ++i) threads_.emplace_back([this] { Run(); });
 }
 
 Workers::~Workers() {

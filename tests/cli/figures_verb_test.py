@@ -31,6 +31,10 @@ class SomeFigures(ProgramTest):
         for name in ("index.html", "figures.json", "figure_23.png", "figure_29.png"):
             self.assertEqual((self.folder / "with 1" / name).read_bytes(), (self.folder / "with 3" / name).read_bytes())
 
+    def test_short_runs_end(self):
+        for k in range(5):  # one thread may be done before another starts
+            self.figures("--only", "1-3", "--size", "8x8", "--threads", 8, "-o", k)
+
     def test_a_changed_shader_is_noticed(self):
         for name in ("shaders", "textures", "scene"):
             shutil.copytree(ROOT / name, self.folder / name)
