@@ -111,7 +111,8 @@ class Shot(ProgramTest):
         self.assertEqual(again[2], read_png(self.folder / "a.png")[2])
 
     def test_every_shader(self):
-        for shader in sorted(p.stem for p in (ROOT / "shaders").glob("*.frag")):
+        names = sorted(p.stem for p in (ROOT / "shaders").glob("*.frag"))
+        for shader in (name for name in names if "." not in name):  # NAME.plane is a part of NAME.
             rows = self.shot(ROOT / "scene/sphere.json", "--size", "64x48", "--shader", shader)[2]
             self.assertGreater(len({p for row in rows for p in row}), 3, shader)
 

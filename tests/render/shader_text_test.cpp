@@ -125,6 +125,9 @@ TEST_CASE("every shader of the project compiles for the web, and a broken one do
     ++count;
   }
   CHECK(count >= 11);
+  const TemporaryFolder folder;
+  const ShaderText fresh = ReadShaderText(Must(CreateShader(folder.path(), "Fresh")));
+  CHECK(CompilesForTheWeb(validator, ToEs300(fresh.text), "frag"));
 
   // What desktop OpenGL takes, and the web does not: a whole number where a float is due.
   const std::string good =

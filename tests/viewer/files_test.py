@@ -9,7 +9,7 @@ import unittest
 
 from window import ROOT, ViewerTest, scene, state_hash
 
-SHADERS = ["Wireframe", "Normal", "Diffuse", "Phong", "Texture", "Bump", "Displacement", "Mirror", "Flag"]
+SHADERS = ["Wireframe", "Normal", "Diffuse", "Phong", "Texture", "Bump", "Displacement", "Mirror", "Flag", "Fabric"]
 
 
 def write(path, text):
@@ -99,13 +99,13 @@ class Editing(ViewerTest):
     def test_a_new_shader_appears(self):
         with self.open() as viewer:
             since = viewer.mark()
-            shutil.copy(os.path.join(self.root, "shaders", "Normal.frag"), os.path.join(self.root, "shaders", "Aaa.frag"))
+            shutil.copy(os.path.join(self.root, "shaders", "Normal.frag"), os.path.join(self.root, "shaders", "Zzz.frag"))
             viewer.wait("reload", since, what="shaders")
             since = viewer.key("bracketleft", "previous_shader")  # from the first to the last, which is the new one
-            viewer.wait("shader", since, name="Aaa")
+            viewer.wait("shader", since, name="Zzz")
             since = viewer.mark()
-            os.remove(os.path.join(self.root, "shaders", "Aaa.frag"))
-            message = viewer.wait("message", since, source="shader Aaa")
+            os.remove(os.path.join(self.root, "shaders", "Zzz.frag"))
+            message = viewer.wait("message", since, source="shader Zzz")
             self.assertIn("no shader called", message["text"])
             since = viewer.key("bracketright", "next_shader")
             viewer.wait("shader", since, name="Wireframe")

@@ -161,7 +161,7 @@ class Settings(ViewerTest):
             self.assertEqual(viewer.step()["hash"], state_hash(scene("pinned2"), 1, "--set", "cloth.ks=400"))
 
     def test_all_cloths_or_one(self):
-        with self.viewer(scene("layers")) as viewer:
+        with self.viewer(scene("layers"), "--shader", "Phong") as viewer:  # Shadows take the processor long.
             with open(scene("layers"), encoding="utf-8") as file:
                 cloths = len(json.load(file)["cloth"])
             self.assertGreater(cloths, 1)
