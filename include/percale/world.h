@@ -54,6 +54,8 @@ struct StepReport {
   double time = 0;                                 ///< Simulated time [s].
   std::array<double, kStageCount> stageSeconds{};  ///< Wall-clock time spent, by Stage [s].
   double kineticEnergy = 0;                        ///< [J]
+  double potentialEnergy = 0;                      ///< Of gravity; 0 where all points are at the origin [J].
+  double elasticEnergy = 0;                        ///< Of what is stretched and compressed [J].
   double greatestStretch = 0;                      ///< Greatest length over rest length of all springs.
   double greatestMove = 0;                         ///< Farthest way of a point over this frame [m].
   std::int64_t selfContacts = 0;                   ///< Pairs of cloth points pushed apart, summed over the steps.
@@ -69,6 +71,7 @@ class ClothView {
  public:
   std::span<const Vec3> positions() const { return positions_; }      ///< [m], one per vertex.
   std::span<const Vec3> velocities() const { return velocities_; }    ///< [m/s], one per vertex.
+  std::span<const Vec3> rest() const { return rest_; }                ///< The rest shape, where it started [m].
   std::span<const Vec2> uv() const { return uv_; }                    ///< 0..1, one per vertex.
   std::span<const Triangle> triangles() const { return triangles_; }  ///< Vertex indices.
   std::span<const Edge> springs() const { return springs_; }          ///< Of the enabled kinds, in creation order.
@@ -76,7 +79,7 @@ class ClothView {
 
  private:
   friend class World;
-  std::span<const Vec3> positions_, velocities_;
+  std::span<const Vec3> positions_, velocities_, rest_;
   std::span<const Vec2> uv_;
   std::span<const Triangle> triangles_;
   std::span<const Edge> springs_;

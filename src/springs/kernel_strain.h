@@ -46,6 +46,31 @@ GreatestStretchResult GreatestStretch(const GreatestStretchArgs& a) {
   return result;
 }
 
+double ElasticEnergy(const ElasticEnergyArgs& a) {
+  // Eight sums side by side, whatever the instruction set holds at once: the same bits on all.
+  constexpr int kSums = 8;
+  static_assert(kSums % kLanes == 0 && kSums <= kGridPad);
+  const Steps step(a.numWidth);
+  Pack sums[kSums / kLanes];
+  for (Pack& sum : sums) sum = All(0);
+  for (std::int64_t p = 0; p < a.pointCount; p += kSums) {
+    for (int part = 0; part < kSums / kLanes; ++part) {
+      const std::int64_t at = p + part * kLanes;
+      const Pack3 x = Load3(a.x, at);
+      for (int kind = 0; kind < kKinds; ++kind) {
+        const Pack rest = Load(a.rest[kind] + at);
+        const Pack longer = Sqrt(SquaredLength(Load3(a.x, at + step[kind]) - x)) - rest;
+        sums[part] = sums[part] + Where(All(kNoSpringRest) > rest, All(0.5 * a.stiffness[kind]) * longer * longer);
+      }
+    }
+  }
+  double lanes[kSums];
+  for (int part = 0; part < kSums / kLanes; ++part) Store(lanes + part * kLanes, sums[part]);
+  double energy = 0;
+  for (const double lane : lanes) energy += lane;
+  return energy;
+}
+
 /// One sheet's sweep over all springs in creation order.
 struct StrainSweep {
   const StrainArgs& a;

@@ -59,6 +59,15 @@ struct GreatestStretchResult {
   std::int64_t point;   ///< That creates the spring.
 };
 
+/// What is stored in the springs of one cloth.
+struct ElasticEnergyArgs {
+  int numWidth;
+  std::int64_t pointCount;
+  const double* x[3];
+  const double* rest[6];
+  double stiffness[6];  ///< Of each kind [N/m]; 0 for kinds that are not enabled.
+};
+
 /// Zeros that the strain limit needs behind the bits of the last point: springs created there do not exist.
 inline int MarkPadding(int numWidth) {
   return 2 * numWidth + kGridPad;
@@ -126,6 +135,8 @@ struct Kernels {
   /// Returns the number of springs shortened.
   std::int64_t (*limitStrain)(const StrainArgs&);
   GreatestStretchResult (*greatestStretch)(const GreatestStretchArgs&);
+  /// Returns half of the stiffness times the square of what is longer or shorter than at rest, of all [J].
+  double (*elasticEnergy)(const ElasticEnergyArgs&);
   /// Returns the number of points whose key changed.
   std::int64_t (*boxKeys)(const BoxKeyArgs&);
   /// Returns the number of (point, neighbour) contacts.

@@ -70,8 +70,7 @@ struct Steps {
 
 }  // namespace
 
-extern const Kernels kKernels = {PERCALE_KERNELS_NAME, Integrate,       MarkLongSprings,
-                                 LimitStrain,          GreatestStretch, BoxKeys,
-                                 SeparateBuckets,      CollideSphere,   CollidePlane};
+extern const Kernels kKernels = {PERCALE_KERNELS_NAME, Integrate, MarkLongSprings, LimitStrain,   GreatestStretch,
+                                 ElasticEnergy,        BoxKeys,   SeparateBuckets, CollideSphere, CollidePlane};
 
 }  // namespace percale::springs::PERCALE_KERNELS

@@ -584,6 +584,22 @@ Stretch SpringsEngine::GreatestStretch() const {
   return greatest;
 }
 
+double SpringsEngine::ElasticEnergy() const {
+  double energy = 0;
+  for (const Sheet& sheet : sheets_) {
+    ElasticEnergyArgs args{};
+    args.numWidth = sheet.numWidth;
+    args.pointCount = sheet.PointCount();
+    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis] + sheet.firstPoint;
+    for (int kind = 0; kind < kSpringKinds; ++kind) {
+      args.rest[kind] = sheet.Rest(kind);
+      args.stiffness[kind] = sheet.stiffness[kind];
+    }
+    energy += kernels_.elasticEnergy(args);
+  }
+  return energy;
+}
+
 VertexRef SpringsEngine::FindOutOfBounds() const {
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     for (int v = 0; v < sheets_[s].PointCount(); ++v) {

@@ -92,6 +92,9 @@ class SpringsEngine {
                   std::span<const Vec3> anchors, double time);
   /// The longest of all springs, whatever kinds are enabled.
   Stretch GreatestStretch() const;
+  /// Of all springs of the enabled kinds: half of stiffness times the square of what they are longer or
+  /// shorter than at rest [J].
+  double ElasticEnergy() const;
   double Mass(int cloth) const { return sheets_[static_cast<std::size_t>(cloth)].mass; }
   /// The first point with a coordinate out of bounds.
   VertexRef FindOutOfBounds() const;

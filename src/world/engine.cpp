@@ -37,6 +37,7 @@ constexpr EngineTable kSprings = {
     .writeState = [](void* e, int cloth, const WorldState::Cloth& state,
                      double time) { Self(e).WriteState(cloth, state.positions, state.previous, state.anchors, time); },
     .greatestStretch = [](const void* e) { return Self(e).GreatestStretch(); },
+    .elasticEnergy = [](const void* e) { return Self(e).ElasticEnergy(); },
     .mass = [](const void* e, int cloth) { return Self(e).Mass(cloth); },
     .findOutOfBounds = [](const void* e) { return Self(e).FindOutOfBounds(); },
     .takeCounts = [](void* e) { return Self(e).TakeCounts(); },

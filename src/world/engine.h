@@ -40,6 +40,7 @@ struct EngineTable {
   /// The state of one cloth at `time` [s], which may be that of another World with the same cloths.
   void (*writeState)(void*, int cloth, const WorldState::Cloth&, double time);
   Stretch (*greatestStretch)(const void*);
+  double (*elasticEnergy)(const void*);    ///< [J]
   double (*mass)(const void*, int cloth);  ///< Of one point [kg].
   VertexRef (*findOutOfBounds)(const void*);
   EngineCounts (*takeCounts)(void*);  ///< Since the last call.

@@ -148,17 +148,22 @@ void World::Impl::ComputeVelocities(Cloth& cloth) {
 void World::Impl::FinishStep() {
   ReadState();
   double move = 0;  // squared
-  report.kineticEnergy = 0;
+  report.kineticEnergy = report.potentialEnergy = 0;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const Cloth& cloth = cloths[c];
     double squaredSpeeds = 0;
+    Vec3 sum;
     for (std::size_t v = 0; v < cloth.positions.size(); ++v) {
       const Vec3 way = cloth.positions[v] - cloth.lastFrame[v];
       move = std::max(move, Dot(way, way));
       squaredSpeeds += Dot(cloth.velocities[v], cloth.velocities[v]);
+      sum += cloth.positions[v];
     }
-    report.kineticEnergy += 0.5 * engine->mass(engineState.get(), static_cast<int>(c)) * squaredSpeeds;
+    const double mass = engine->mass(engineState.get(), static_cast<int>(c));
+    report.kineticEnergy += 0.5 * mass * squaredSpeeds;
+    report.potentialEnergy -= mass * Dot(scene->simulation.gravity, sum);
   }
+  report.elasticEnergy = engine->elasticEnergy(engineState.get());
   report.greatestMove = std::sqrt(move);
   const EngineCounts counts = engine->takeCounts(engineState.get());
   report.selfContacts = counts.selfContacts;
@@ -352,6 +357,7 @@ ClothView World::Cloth(int index) const {
   const Impl::Cloth& cloth = impl_->cloths[static_cast<std::size_t>(index)];
   ClothView view;
   view.positions_ = cloth.positions;
+  view.rest_ = cloth.model.start;
   view.velocities_ = cloth.velocities;
   view.uv_ = cloth.model.uv;
   view.triangles_ = cloth.model.triangles;

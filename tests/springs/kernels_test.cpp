@@ -261,6 +261,23 @@ TEST_CASE("the greatest stretch is that of a plain loop, and the first of its po
           const GreatestStretchResult found = kernels->greatestStretch(args);
           REQUIRE(found.squaredRatio == greatest);
           REQUIRE(found.point == point);
+
+          ElasticEnergyArgs energyArgs{};
+          energyArgs.numWidth = numWidth;
+          energyArgs.pointCount = s.count;
+          double energy = 0;
+          for (int kind = 0; kind < kSpringKinds; ++kind) {
+            energyArgs.rest[kind] = s.rest[kind];
+            energyArgs.stiffness[kind] = kind == 3 ? 0 : 100.0 + kind;
+            for (int p = 0; p < s.count; ++p) {
+              if (!Creates(numWidth, p, kind)) continue;
+              const double longer = std::sqrt(s.Squared(p, kind)) - s.rest[kind][At(p)];
+              energy += 0.5 * energyArgs.stiffness[kind] * longer * longer;
+            }
+          }
+          for (int axis = 0; axis < 3; ++axis) energyArgs.x[axis] = s.x.axis(axis);
+          CHECK(kernels->elasticEnergy(energyArgs) == doctest::Approx(energy).epsilon(1e-12));
+          CHECK(kernels->elasticEnergy(energyArgs) == BaselineKernels().elasticEnergy(energyArgs));
         }
       }
     }

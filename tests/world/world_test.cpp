@@ -87,6 +87,45 @@ TEST_CASE("a frame is stepsPerFrame steps, and the report counts them") {
   CHECK(seconds > 0);
 }
 
+TEST_CASE("energies of a cloth in free fall: what gravity gives up, motion takes") {
+  Scene scene = SmallScene(4, 3);
+  scene.cloths[0].damping = 0;
+  scene.cloths.push_back(scene.cloths[0]);
+  scene.cloths[1].origin.y = 10;
+  scene.cloths[1].density = 20;
+  World world(scene);
+  Run(world, 30);
+  const double area = scene.cloths[0].width * scene.cloths[0].height, g = 9.8, t = world.report().time;
+  const double dt = scene.TimeStep(), fallen = 0.5 * g * t * (t + dt);  // Verlet from rest
+  const double mass[2] = {area * scene.cloths[0].density, area * 20};
+  const double potential = g * (mass[0] * (1 - fallen) + mass[1] * (11 - fallen));
+  CHECK(world.report().potentialEnergy == doctest::Approx(potential).epsilon(1e-9));
+  CHECK(world.report().kineticEnergy == doctest::Approx(0.5 * (mass[0] + mass[1]) * g * t * g * t).epsilon(1e-9));
+  CHECK(world.report().elasticEnergy == doctest::Approx(0).epsilon(1e-12));
+}
+
+TEST_CASE("the elastic energy of a sheet that its pins have pulled 5% wider") {
+  Scene scene = SmallScene(3, 2);
+  ClothSettings& cloth = scene.cloths[0];
+  cloth.width = 0.4;  // three columns 0.2 m apart, two rows 0.1 m apart
+  cloth.height = 0.1;
+  cloth.pinned = {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}};
+  scene.pinMotions.push_back({0, {{1, 0}, {1, 1}}, 0, 0.1, {0.01, 0, 0}});
+  scene.pinMotions.push_back({0, {{2, 0}, {2, 1}}, 0, 0.1, {0.02, 0, 0}});
+  World world(scene);
+  Run(world, 20);
+  REQUIRE(world.report().time > 0.1);
+  const double structural = 4 * 0.01 * 0.01;  // both halves of both rows
+  const double diagonal = std::hypot(0.21, 0.1) - std::hypot(0.2, 0.1), shearing = 4 * diagonal * diagonal;
+  const double bending = 0.2 * 2 * 0.02 * 0.02;  // a fifth of ks, across both halves
+  CHECK(world.report().elasticEnergy ==
+        doctest::Approx(0.5 * cloth.ks * (structural + shearing + bending)).epsilon(1e-9));
+  scene.cloths[0].enableShearing = false;
+  world.Apply(scene);
+  world.Step();
+  CHECK(world.report().elasticEnergy == doctest::Approx(0.5 * cloth.ks * (structural + bending)).epsilon(1e-9));
+}
+
 TEST_CASE("every stage has a name of its own") {
   std::set<std::string_view> names;
   for (int s = 0; s < kStageCount; ++s) names.insert(StageName(static_cast<Stage>(s)));
