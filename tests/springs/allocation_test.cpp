@@ -12,6 +12,7 @@
 #include "springs/kernels.h"
 #include "springs/springs_engine.h"
 #include "tests/springs/scenes.h"
+#include "world/measure.h"
 
 namespace {
 
@@ -114,6 +115,28 @@ TEST_CASE("a warmed-up frame does not allocate") {
     if (!kSanitized) CHECK(contacts > 0);
     CHECK(CountAllocations([&] { world.Reset(); }) == 0);
   }
+}
+
+TEST_CASE("measuring does not allocate once it is warm") {
+  World world(CourseScene("selfCollision", 30), {.threads = 1});
+  Run(world, Frames(90));
+  const ClothView cloth = world.Cloth(0);
+  const std::size_t count = cloth.positions().size();
+  const ContactCloth contactCloth{cloth.positions(), cloth.rest(), world.scene().cloths[0].thickness};
+  std::vector<double> a(count), b(count), ratios;
+  CurvatureMeter curvature;
+  ContactFinder contacts;
+  const auto measure = [&] {
+    MeasureStretch(cloth.positions(), cloth.rest(), cloth.springs(), a, b);
+    MeasureSpeed(cloth.velocities(), a);
+    curvature.Measure(cloth.positions(), cloth.triangles(), a);
+    contacts.Find({&contactCloth, 1}, world.scene().spheres, world.scene().planes);
+    ratios.clear();
+    AppendStretch(cloth.positions(), cloth.rest(), cloth.springs(), ratios);
+    Percentile(ratios, 0.99);
+  };
+  measure();
+  CHECK(CountAllocations(measure) == 0);
 }
 
 TEST_CASE("no stage of the engine allocates") {
