@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "render/heat_scale.h"
 #include "render/mat4.h"
 #include "render/shader_library.h"
 
@@ -23,9 +24,10 @@ struct DrawMesh {
   std::vector<float> normals;            ///< x y z 0 per vertex, unit.
   std::vector<float> tangents;           ///< x y z 0 per vertex, unit.
   std::vector<float> uv;                 ///< u v per vertex.
+  std::vector<float> values;             ///< One per vertex, for a heat map; or none.
   std::vector<std::uint32_t> triangles;  ///< Three vertices each.
   std::vector<std::uint32_t> lines;      ///< Two vertices each: the springs.
-  std::uint64_t shapeVersion = 0;        ///< Another number: positions or normals have changed.
+  std::uint64_t shapeVersion = 0;        ///< Another number: positions, normals or values have changed.
   std::uint64_t meshVersion = 0;         ///< Another number: anything else has changed, or the sizes.
 
   std::size_t VertexCount() const { return positions.size() / 3; }
@@ -42,6 +44,20 @@ struct DrawItem {
   Surface surface = Surface::Cloth;  ///< Chooses the part of the shader.
   bool castsShadow = false;          ///< Stands in the shadow map of shaders that want one.
   Color backColor{1, 1, 1, 1};       ///< u_back_color.
+  bool heatMap = false;              ///< Coloured by the mesh's values, without the shader.
+};
+
+/// One end of a line, or a point.
+struct Mark {
+  std::array<float, 3> position{};                        ///< [m]
+  std::array<std::uint8_t, 4> color{255, 255, 255, 255};  ///< Red, green, blue, unused.
+  float size = 1;                                         ///< Of a point: its diameter [pixel].
+};
+
+/// Coloured lines and points over the surfaces, as far as those do not hide them.
+struct Marks {
+  std::vector<Mark> lines;  ///< Two each.
+  std::vector<Mark> points;
 };
 
 struct DrawList {
@@ -57,6 +73,8 @@ struct DrawList {
   UniformValues uniforms;                         ///< Parameters that differ from the shader's defaults.
   std::array<std::filesystem::path, 4> textures;  ///< Of u_texture_1..4; empty: the project's own.
   std::vector<DrawItem> items;
+  HeatScale heatScale;  ///< Of the items that are heat maps.
+  Marks marks;
 };
 
 }  // namespace percale

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/atomic_file.h"
+#include "render/gl_builtin.h"
 #include "render/gl_shadow_map.h"
 #include "render/gl_textures.h"
 
@@ -40,12 +41,13 @@ std::array<float, 16> ToFloats(const Mat4& matrix) {
 
 // The buffers of one DrawMesh.
 struct GpuMesh {
-  enum { Positions, Normals, Uv, Tangents, Triangles, Lines, BufferCount };
+  enum { Positions, Normals, Uv, Tangents, Values, Triangles, Lines, BufferCount };
   std::weak_ptr<const DrawMesh> source;
   GLuint vertexArrays[2] = {};  // Of the triangles, and of the lines: they differ by their index buffer.
   GLuint buffers[BufferCount] = {};
   std::uint64_t shapeVersion = 0, meshVersion = 0;
   bool isFilled = false;
+  bool hasValues = false;
 };
 
 class MeshStore {
@@ -73,6 +75,8 @@ class MeshStore {
       Fill(GL_ARRAY_BUFFER, mesh.buffers[GpuMesh::Positions], source->positions, GL_STREAM_DRAW);
       Fill(GL_ARRAY_BUFFER, mesh.buffers[GpuMesh::Normals], source->normals, GL_STREAM_DRAW);
       Fill(GL_ARRAY_BUFFER, mesh.buffers[GpuMesh::Tangents], source->tangents, GL_STREAM_DRAW);
+      if (!source->values.empty()) Fill(GL_ARRAY_BUFFER, mesh.buffers[GpuMesh::Values], source->values, GL_STREAM_DRAW);
+      if (mesh.hasValues == source->values.empty()) EnableValues(mesh, !source->values.empty());
     }
     mesh.meshVersion = source->meshVersion;
     mesh.shapeVersion = source->shapeVersion;
@@ -97,6 +101,21 @@ class MeshStore {
     glBindBuffer(target, buffer);
     // With new storage of the same size the driver need not wait for the last frame to be drawn.
     glBufferData(target, static_cast<GLsizeiptr>(data.size() * sizeof(T)), data.data(), usage);
+  }
+
+  // Without values every vertex has the value 0.
+  static void EnableValues(GpuMesh& mesh, bool enable) {
+    for (const GLuint vertexArray : mesh.vertexArrays) {
+      glBindVertexArray(vertexArray);
+      if (enable) {
+        glBindBuffer(GL_ARRAY_BUFFER, mesh.buffers[GpuMesh::Values]);
+        glVertexAttribPointer(GlBuiltin::kValueAttribute, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+        glEnableVertexAttribArray(GlBuiltin::kValueAttribute);
+      } else {
+        glDisableVertexAttribArray(GlBuiltin::kValueAttribute);
+      }
+    }
+    mesh.hasValues = enable;
   }
 
   static void Create(GpuMesh& mesh) {
@@ -172,11 +191,13 @@ struct GlDevice::Impl {
   void UsePlain(const Mat4& viewProjection);
   void SetUniforms(const ShaderProgram& shader, const DrawList& list);
   void Draw(const DrawItem& item, const ShaderProgram* shader);
+  void DrawMesh(const DrawItem& item);
 
   ShaderLibrary shaders;
   GlTextures textures;
   MeshStore meshes;
   GlShadowMap shadowMap;
+  GlBuiltin builtin;
   GLuint plain = 0;
 };
 
@@ -313,9 +334,6 @@ void GlDevice::Impl::SetUniforms(const ShaderProgram& shader, const DrawList& li
 // With the program in use: that of `shader`, or the plain one.
 void GlDevice::Impl::Draw(const DrawItem& item, const ShaderProgram* shader) {
   const bool isLines = item.primitive == DrawItem::Primitive::Lines;
-  const auto count = static_cast<GLsizei>(isLines ? item.mesh->lines.size() : item.mesh->triangles.size());
-  if (count == 0) return;
-  const GpuMesh& mesh = meshes.Get(item.mesh);
   const std::array<float, 16> model = ToFloats(item.model);
   if (shader) {
     if (shader->Location("u_model") >= 0) glUniformMatrix4fv(shader->Location("u_model"), 1, GL_FALSE, model.data());
@@ -325,6 +343,15 @@ void GlDevice::Impl::Draw(const DrawItem& item, const ShaderProgram* shader) {
   } else {
     glUniformMatrix4fv(glGetUniformLocation(plain, "u_model"), 1, GL_FALSE, model.data());
   }
+  DrawMesh(item);
+}
+
+// With the program in use.
+void GlDevice::Impl::DrawMesh(const DrawItem& item) {
+  const bool isLines = item.primitive == DrawItem::Primitive::Lines;
+  const auto count = static_cast<GLsizei>(isLines ? item.mesh->lines.size() : item.mesh->triangles.size());
+  if (count == 0) return;
+  const GpuMesh& mesh = meshes.Get(item.mesh);
   if (item.pushBack) {
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1, 1);
@@ -364,6 +391,12 @@ Status GlDevice::Draw(const DrawList& list, int width, int height) {
   const DrawItem* previous = nullptr;
   const ShaderProgram* shader = nullptr;
   for (const DrawItem& item : list.items) {
+    if (item.heatMap) {
+      impl_->builtin.UseHeatMap(list, item.model);
+      impl_->DrawMesh(item);
+      previous = nullptr;
+      continue;
+    }
     if (!previous || previous->shader != item.shader || previous->surface != item.surface) {
       previous = &item;
       shader = impl_->shaders.Find(item.shader, item.surface);
@@ -380,6 +413,7 @@ Status GlDevice::Draw(const DrawList& list, int width, int height) {
     }
     if (shader || item.surface != Surface::Background) impl_->Draw(item, shader);
   }
+  impl_->builtin.DrawMarks(list, height);
   glBindVertexArray(0);
   glUseProgram(0);
   glActiveTexture(GL_TEXTURE0);

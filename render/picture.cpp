@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "render/headless.h"
+#include "render/legend.h"
 
 namespace percale {
 
@@ -21,7 +22,9 @@ struct Painter::Impl {
   Result<Image> Paint(const DrawList& list) {
     target->Bind();
     if (const Status drawn = device->Draw(list, target->width(), target->height()); !drawn) return drawn.diagnostics();
-    return {target->Read(), device->TakeWarnings()};
+    Image image = target->Read();
+    DrawLegend(image, list.heatScale);
+    return {std::move(image), device->TakeWarnings()};
   }
 };
 

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "render/heat_map.h"
+
 namespace percale {
 namespace {
 
@@ -15,6 +17,7 @@ constexpr double kDrawnSphereRadius = 0.92;
 constexpr double kWidestLight = 0.98;  // Sine of half the angle that a shadow map covers.
 constexpr Color kPlaneColor{0.7f, 0.7f, 0.7f, 1};
 constexpr Color kOverlayColor{0.08f, 0.08f, 0.08f, 1};
+constexpr double kNormalLength = 0.015;  // of the camera's distance, so that they look as long from anywhere
 
 Color Times(const Color& a, const Vec3& b) {
   return {a[0] * float(b.x), a[1] * float(b.y), a[2] * float(b.z), a[3]};
@@ -75,7 +78,7 @@ void Update(ClothMesh& cloth, const ClothShape& shape, Tangents tangents) {
   if (isOther) mesh.meshVersion += 1;
 }
 
-struct Box {
+struct Bounds {
   Vec3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
 
   void Add(const Vec3& a, const Vec3& b) {
@@ -85,7 +88,7 @@ struct Box {
 };
 
 // The box of positions, x y z each.
-Box BoxOf(const std::vector<float>& positions) {
+Bounds BoundsOf(const std::vector<float>& positions) {
   float low[3] = {1e30f, 1e30f, 1e30f}, high[3] = {-1e30f, -1e30f, -1e30f};
   for (std::size_t i = 0; i < positions.size(); i += 3) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -97,7 +100,7 @@ Box BoxOf(const std::vector<float>& positions) {
 }
 
 // From the light, the sphere around the box fills the picture.
-Mat4 FitLight(const Vec3& light, const Box& box) {
+Mat4 FitLight(const Vec3& light, const Bounds& box) {
   if (box.low.x > box.high.x) return {};
   const Vec3 center = 0.5 * (box.low + box.high);
   const double radius = std::max(0.5 * Length(box.high - box.low), 1e-6);
@@ -120,6 +123,9 @@ struct SceneView::Impl {
   std::vector<std::shared_ptr<DrawMesh>> planes;
   std::shared_ptr<DrawMesh> background = std::make_shared<DrawMesh>(MakeSphereMesh(4, 8));
   std::vector<ClothShape> shapes;  // Of a World's cloths, while its list is made.
+  HeatMap heatMap;
+  ContactFinder contacts;
+  BoxFinder boxes;
   DrawList list;
 
   void UpdateColliders(const Scene& scene, const View& view) {
@@ -137,6 +143,20 @@ struct SceneView::Impl {
       planes[i] = std::make_shared<DrawMesh>(MakePlaneMesh(now.point, now.normal));
       planeSettings[i] = now;
     }
+  }
+
+  void AddOverlays(const Scene& scene, std::span<const ClothShape> shown, const View& view) {
+    Marks& marks = list.marks;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      if (view.overlays.normals) AddNormals(*cloths[i].mesh, kNormalLength * view.camera.distance(), marks);
+      if (view.overlays.pins) AddPins(shown[i], marks);
+    }
+    if (view.overlays.contacts) AddContacts(shown, contacts, marks);
+    if (!view.overlays.boxes) return;
+    std::vector<std::span<const Vec3>> positions;
+    for (const ClothShape& cloth : shown) positions.push_back(cloth.positions);
+    boxes.Find(scene.cloths, positions);
+    AddBoxes(boxes, marks);
   }
 };
 
@@ -157,7 +177,8 @@ const DrawList& SceneView::Update(const World& world, const View& view, int widt
   shapes.clear();
   for (int i = 0; i < world.ClothCount(); ++i) {
     const ClothView cloth = world.Cloth(i);
-    shapes.push_back({cloth.positions(), cloth.uv(), cloth.triangles(), cloth.springs()});
+    shapes.push_back({cloth.positions(), cloth.uv(), cloth.triangles(), cloth.springs(), cloth.rest(),
+                      cloth.velocities(), cloth.pinned()});
   }
   return Update(world.scene(), shapes, view, width, height, world.balls());
 }
@@ -175,11 +196,19 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   list.items.clear();
 
   const Color color = Times({1, 1, 1, 1}, view.look.color);
-  const bool linesOnly = view.look.shader == "Wireframe";
-  Box casters;
+  const bool heat = view.cloths && view.heatMap.quantity != Quantity::None;
+  const bool linesOnly = view.look.shader == "Wireframe" && !heat;
+  Bounds casters;
   impl_->cloths.resize(cloths.size());
+  if (view.cloths && (view.heatMap.quantity == Quantity::Contact || view.overlays.contacts))
+    FindContacts(scene, cloths, balls, impl_->contacts);
+  if (heat) impl_->heatMap.Measure(view.heatMap, cloths, impl_->contacts);
+  list.heatScale = heat ? impl_->heatMap.scale() : HeatScale{};
   for (std::size_t i = 0; view.cloths && i < cloths.size(); ++i) {
     percale::Update(impl_->cloths[i], cloths[i], view.look.tangents);
+    std::vector<float>& values = impl_->cloths[i].mesh->values;
+    values.clear();
+    if (heat) values.assign(impl_->heatMap.Values(i).begin(), impl_->heatMap.Values(i).end());
     DrawItem item{impl_->cloths[i].mesh, DrawItem::Primitive::Lines, view.look.shader, color, {}, false};
     if (i < scene.cloths.size()) {
       item.color = Times(color, scene.cloths[i].color);
@@ -192,9 +221,10 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
     item.primitive = DrawItem::Primitive::Triangles;
     item.pushBack = view.wireframe;
     item.castsShadow = true;
+    item.heatMap = heat;
     list.items.push_back(item);
     if (cloths[i].positions.empty()) continue;
-    const Box box = BoxOf(item.mesh->positions);
+    const Bounds box = BoundsOf(item.mesh->positions);
     casters.Add(box.low, box.high);
   }
 
@@ -233,6 +263,9 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   background.model(2, 3) = list.cameraPosition.z;
   list.items.push_back(std::move(background));
   list.lightViewProjection = FitLight(list.lightPosition, casters);
+  list.marks.lines.clear();
+  list.marks.points.clear();
+  if (view.cloths && view.overlays.Any()) impl_->AddOverlays(scene, cloths, view);
   return list;
 }
 

@@ -11,6 +11,8 @@
 #include "percale/world.h"
 #include "render/camera.h"
 #include "render/draw_list.h"
+#include "render/heat_scale.h"
+#include "render/overlays.h"
 
 namespace percale {
 
@@ -24,6 +26,8 @@ struct View {
   bool cloths = true;                             ///< Draw the cloths.
   bool colliders = true;                          ///< Draw the spheres, planes and balls.
   int shadowMapSize = 1024;                       ///< [pixel]; 0: no shadows. Used by shaders that draw shadows.
+  HeatMapSettings heatMap;                        ///< Colours the cloths by a quantity, in place of the shader.
+  Overlays overlays;                              ///< What else is drawn over them.
   UniformValues uniforms;                         ///< Parameters of shaders that differ from their defaults.
   std::array<std::filesystem::path, 4> textures;  ///< PNG files for u_texture_1..4; empty: the project's own.
 
@@ -37,6 +41,10 @@ struct ClothShape {
   std::span<const Vec2> uv;
   std::span<const Triangle> triangles;
   std::span<const Edge> springs;
+  // What heat maps and overlays need besides.
+  std::span<const Vec3> rest = {};
+  std::span<const Vec3> velocities = {};
+  std::span<const std::int32_t> pinned = {};
 };
 
 /// Turns a World into a draw list, and keeps what stays the same from one picture to the next.

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <tuple>
 #include <utility>
-
-#include "collide/boxes.h"
 
 namespace percale {
 namespace {
@@ -32,11 +31,8 @@ std::uint64_t Cell(std::int64_t x, std::int64_t y, std::int64_t z) {
          (static_cast<std::uint64_t>(z) & mask) << (2 * kCellBits);
 }
 
-struct CellIndex {
-  std::int64_t x, y, z;
-};
-CellIndex CellOf(const Vec3& p, double size) {
-  return {BoxIndex(p.x, size), BoxIndex(p.y, size), BoxIndex(p.z, size)};
+Box CellOf(const Vec3& p, double size) {
+  return BoxOf(p, {size, size, size});
 }
 
 bool TouchCloth(const ContactCloth& a, std::size_t p, const ContactCloth& b, std::size_t q) {
@@ -53,8 +49,8 @@ bool Touches(const Vec3& p, const PlaneSettings& plane) {
 }
 
 /// The cell itself, then half of those around it: of two neighbours one looks at the other.
-constexpr CellIndex kHalfAround[] = {{0, 0, 0},  {1, 0, 0},  {-1, 1, 0}, {0, 1, 0}, {1, 1, 0},  {-1, -1, 1}, {0, -1, 1},
-                                     {1, -1, 1}, {-1, 0, 1}, {0, 0, 1},  {1, 0, 1}, {-1, 1, 1}, {0, 1, 1},   {1, 1, 1}};
+constexpr Box kHalfAround[] = {{0, 0, 0},  {1, 0, 0},  {-1, 1, 0}, {0, 1, 0}, {1, 1, 0},  {-1, -1, 1}, {0, -1, 1},
+                               {1, -1, 1}, {-1, 0, 1}, {0, 0, 1},  {1, 0, 1}, {-1, 1, 1}, {0, 1, 1},   {1, 1, 1}};
 
 }  // namespace
 
@@ -129,14 +125,14 @@ void BoxFinder::Find(std::span<const ClothSettings> cloths, std::span<const std:
   boxOf_.clear();
   boxes_.clear();
   for (const std::span<const Vec3> points : positions) {
-    for (const Vec3& p : points)
-      boxOf_.push_back({BoxIndex(p.x, size_.x), BoxIndex(p.y, size_.y), BoxIndex(p.z, size_.z)});
+    for (const Vec3& p : points) boxOf_.push_back(BoxOf(p, size_));
   }
-  std::sort(boxOf_.begin(), boxOf_.end());
+  std::sort(boxOf_.begin(), boxOf_.end(),
+            [](const Box& a, const Box& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
   for (std::size_t begin = 0, end = 0; begin < boxOf_.size(); begin = end) {
     while (end < boxOf_.size() && boxOf_[end] == boxOf_[begin]) ++end;
     if (end - begin < 2) continue;
-    const BoxOf& box = boxOf_[begin];
+    const Box& box = boxOf_[begin];
     const Vec3 corner{double(box.x) * size_.x, double(box.y) * size_.y, double(box.z) * size_.z};
     boxes_.push_back({corner, static_cast<int>(end - begin)});
   }
@@ -195,7 +191,7 @@ void ContactFinder::FindPairs(std::span<const ContactCloth> cloths) {
   cells_.resize(positions_.size());
   members_.resize(positions_.size());
   for (std::size_t p = 0; p < positions_.size(); ++p) {
-    const CellIndex at = CellOf(positions_[p], size);
+    const Box at = CellOf(positions_[p], size);
     cells_[p] = Cell(at.x, at.y, at.z);
     const std::uint32_t slot = Slot(cells_[p]);
     ++slotBegin_[slot];
@@ -215,8 +211,8 @@ void ContactFinder::FindPairs(std::span<const ContactCloth> cloths) {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     for (std::int32_t p = firstPoint_[c]; p < firstPoint_[c + 1]; ++p) {
       const Vec3& x = positions_[Index(p)];
-      const CellIndex at = CellOf(x, size);
-      for (const CellIndex& step : kHalfAround) {
+      const Box at = CellOf(x, size);
+      for (const Box& step : kHalfAround) {
         const std::uint64_t cell = Cell(at.x + step.x, at.y + step.y, at.z + step.z);
         const bool own = &step == kHalfAround;
         const std::uint32_t slot = Slot(cell);

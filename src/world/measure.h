@@ -3,11 +3,11 @@
 /// What can be read off cloths as they lie: what heat maps colour, plots draw and inspectors tell. Pure
 /// functions of positions over memory of the caller; nothing allocates once its memory is warm.
 
-#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "collide/boxes.h"
 #include "mesh/engine_types.h"
 #include "percale/mesh.h"
 #include "percale/scene.h"
@@ -62,12 +62,8 @@ class BoxFinder {
   std::span<const SharedBox> boxes() const { return boxes_; }
 
  private:
-  struct BoxOf {
-    std::int64_t x, y, z;
-    friend auto operator<=>(const BoxOf&, const BoxOf&) = default;
-  };
   Vec3 size_;
-  std::vector<BoxOf> boxOf_;  // per point, sorted
+  std::vector<Box> boxOf_;  // per point, sorted
   std::vector<SharedBox> boxes_;
 };
 
