@@ -53,6 +53,25 @@ bool LooksWhole(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+/// "a, b and c"
+std::string List(std::span<const std::string_view> names, const std::string& last) {
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    list += i == 0 ? "" : i + 1 < names.size() ? ", " : " " + last + " ";
+    list += names[i];
+  }
+  return list;
+}
+
+/// Where the name is among those there are.
+std::size_t Find(const std::string& option, const std::string& what, const std::string& name,
+                 std::span<const std::string_view> names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  throw CLI::ValidationError(option, "there is no " + what + " " + Quote(name, 60) + DidYouMean(name, names) +
+                                         "; there are " + List(names, "and"));
+}
+
 std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -165,6 +184,30 @@ class Builder {
         ->allow_extra_args(false)
         ->type_name("NAME=VALUE")
         ->group("Picture");
+    Call(app, "--heat-map", "Colours the cloths by " + List(QuantityNames(), "or") + ", with a legend", "NAME",
+         "Picture", [this](const std::string& text) {
+           const std::size_t at = Find("--heat-map", "heat map", text, QuantityNames());
+           options_.heatMap.quantity = static_cast<Quantity>(at);
+         });
+    Call(app, "--heat-range", "The values of the first and the last colour, such as 1,1.1; default: follows the values",
+         "LOW,HIGH", "Picture", [this](const std::string& text) {
+           const char* const expected = "two numbers LOW,HIGH, the second larger";
+           const std::vector<std::string> parts = Split(text, ',');
+           if (parts.size() != 2) Refuse("--heat-range", expected, text);
+           const double low = Number("--heat-range", parts[0], -1e30, 1e30, expected);
+           const double high = Number("--heat-range", parts[1], -1e30, 1e30, expected);
+           if (low >= high) Refuse("--heat-range", expected, text);
+           options_.heatMap.range = ValueRange{low, high};
+         });
+    std::vector<std::string_view> overlays;
+    for (const OverlayInfo& overlay : AllOverlays()) overlays.push_back(overlay.name);
+    Call(app, "--overlay", "Draws over the cloths " + List(overlays, "and") + ": one or more of them", "NAME,NAME,...",
+         "Picture", [this, overlays](const std::string& text) {
+           for (const std::string& part : Split(text, ',')) {
+             const std::size_t at = Find("--overlay", "overlay", part, overlays);
+             options_.overlays.*AllOverlays()[at].shown = true;
+           }
+         });
     Call(app, "--camera", "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,DISTANCE, in degrees and metres: --camera 30,20,2.5",
          "A,E[,D]", "Picture", [this](const std::string& text) { Camera(text); });
     Call(app, "--target", "The point looked at, in metres: --target 0.5,0.5,0.5", "X,Y,Z", "Picture",
@@ -329,6 +372,7 @@ void AddVerbs(CLI::App& app, Builder& builder) {
            "  percale simulate scene/sphere.json --until-rest -o sphere.obj\n"
            "  percale simulate scene/pinned4.json --seconds 5 -o film.pc2\n"
            "  percale simulate scene/pinned2.json --set cloth.ks=500 --progress json\n"
+           "  percale simulate scene/sphere.json --seconds 3 --csv energies.csv\n"
            "Which frames are written: with --every K frame 0 (the start), each K-th and the last; without it\n"
            "the last one, but all from 0 on for .pc2. A .pc2 has evenly spaced frames only, so that with\n"
            "--every the last one is left out where it does not fall on a K-th; its mesh is beside it as\n"
@@ -340,12 +384,18 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   builder.Call(
       simulate, "--every", "Writes each N-th frame, see below", "N", "Output",
       [&builder](const std::string& text) { builder.options().every = Whole("--every", text, 1, kMostFrames); });
+  simulate
+      .add_option("--csv", builder.options().csv,
+                  "Writes what each frame did as a table: energies, stretch, contacts, times of the stages")
+      ->type_name("FILE")
+      ->group("Output");
   builder.Progress(simulate);
 
   CLI::App& shot = verb(Verb::Shot, "Makes one picture (PNG)",
                         "  percale shot scene/sphere.json --until-rest --shader Phong -o a.png\n"
                         "  percale shot scene/pinned2.json --frame 120 --camera 30,20,2.5 --size 1920x1080 -o b.png\n"
-                        "  percale shot scene/sphere.json --frame 90 --shader Bump -a 128 -o 128 -o c.png\n");
+                        "  percale shot scene/sphere.json --frame 90 --shader Bump -a 128 -o 128 -o c.png\n"
+                        "  percale shot scene/sphere.json --until-rest --heat-map stretch --overlay pins -o d.png\n");
   builder.Scene(shot, false);
   builder.OneFrame(shot);
   builder.Picture(shot);

@@ -9,6 +9,9 @@
 #include <variant>
 #include <vector>
 
+#include "render/heat_scale.h"
+#include "render/overlays.h"
+
 namespace percale::cli {
 
 enum ExitCode : int {
@@ -48,6 +51,7 @@ struct Options {
   bool untilRest = false;
   double limit = 60;  ///< Of untilRest, simulated [s].
   std::optional<int> every;
+  std::string csv;           ///< simulate --csv; empty: none.
   std::optional<int> frame;  ///< Of shot.
 
   int latitudes = 40;           ///< -a
@@ -58,6 +62,8 @@ struct Options {
   double framesPerSecond = 30;  ///< Of a video.
   std::string shader;           ///< Empty: the scene's.
   std::vector<UniformOption> uniforms;
+  HeatMapSettings heatMap;                             ///< --heat-map, --heat-range
+  Overlays overlays;                                   ///< --overlay
   std::optional<double> azimuth, elevation, distance;  ///< --camera [degree, degree, m]
   std::optional<std::vector<double>> target;           ///< --target, three numbers [m]
 

@@ -25,6 +25,8 @@ View MakeView(const Options& options, const Scene& scene) {
   View view = View::ForScene(SeenScene(options, scene));
   view.sphereLatitudes = options.latitudes;
   view.sphereLongitudes = options.longitudes;
+  view.heatMap = options.heatMap;
+  view.overlays = options.overlays;
   view.wireframe = options.wireframe;
   return view;
 }

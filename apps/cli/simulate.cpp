@@ -9,7 +9,9 @@
 #include "apps/cli/verbs.h"
 #include "io/atomic_file.h"
 #include "io/cache_kind.h"
+#include "io/report_table.h"
 #include "percale/mesh_file.h"
+#include "world/measure.h"
 
 namespace percale::cli {
 namespace {
@@ -71,6 +73,50 @@ class Recorder {
   bool evenly_;  // frames at equal distances only
   std::optional<CacheWriter> writer_;
   int last_ = -1;
+};
+
+/// What the frames did, on its way into a table.
+class ReportRecorder {
+ public:
+  explicit ReportRecorder(const World& world) : world_(world) {}
+
+  int Open(const std::string& file) {
+    auto opened = AtomicFile::Create(TextPath(file));
+    if (!opened) return Told(opened.diagnostics());
+    file_.emplace(std::move(*opened));
+    return Write(ReportTableHeader());
+  }
+
+  int OnFrame() {
+    if (world_.report().frame == 0) return kDone;  // nothing has been done yet
+    stretch_.clear();
+    for (int c = 0; c < world_.ClothCount(); ++c) {
+      const ClothView cloth = world_.Cloth(c);
+      AppendStretch(cloth.positions(), cloth.rest(), cloth.springs(), stretch_);
+    }
+    std::optional<double> stretch99;
+    if (!stretch_.empty()) stretch99 = Percentile(stretch_, 0.99);
+    return Write(ReportTableRow(world_.report(), stretch99));
+  }
+
+  int Finish() {
+    const Status status = file_->Commit();
+    return status ? kDone : Told(status.diagnostics());
+  }
+
+ private:
+  int Write(const std::string& line) {
+    const Status status = file_->Write(line);
+    return status ? kDone : Told(status.diagnostics());
+  }
+  static int Told(const Diagnostics& diagnostics) {
+    PrintDiagnostics(diagnostics);
+    return kFailed;
+  }
+
+  const World& world_;
+  std::optional<AtomicFile> file_;
+  std::vector<double> stretch_;
 };
 
 void PrintSummary(std::FILE* out, const World& world, const RunTotals& totals, RunEnd end,
@@ -154,17 +200,31 @@ int Simulate(const Options& options) {
   if (records) {
     if (const int code = recorder.Open(options); code != kDone) return code;
   }
+  ReportRecorder reports(world);
+  const bool reporting = !options.csv.empty();
+  if (reporting) {
+    if (const int code = reports.Open(options.csv); code != kDone) return code;
+  }
   RunTotals totals;
   const RunEnd end = Run(
       world, PlanRun(options, session.scene, kDefaultFrames), options, session,
-      [&] { return records ? recorder.OnFrame() : int(kDone); }, &totals);
+      [&] {
+        const int code = reporting ? reports.OnFrame() : int(kDone);
+        return code == kDone && records ? recorder.OnFrame() : code;
+      },
+      &totals);
   if (end == RunEnd::Failed) return kFailed;
   std::vector<fs::path> written;
   if (records) {
     if (const int code = recorder.Finish(written); code != kDone) return code;
   }
+  if (reporting) {
+    if (const int code = reports.Finish(); code != kDone) return code;
+    written.push_back(TextPath(options.csv));
+  }
   // A cache on stdout stays a cache.
-  const bool piped = options.output == "/dev/stdout" || options.output == "/dev/fd/1";
+  const auto toStdout = [](const std::string& file) { return file == "/dev/stdout" || file == "/dev/fd/1"; };
+  const bool piped = toStdout(options.output) || toStdout(options.csv);
   PrintSummary(piped ? stderr : stdout, world, totals, end, written, session);
   return CodeOf(end);
 }

@@ -96,6 +96,27 @@ class Shot(ProgramTest):
             for b in pictures[:i]:
                 self.assertNotEqual(a, b)
 
+    def test_heat_maps_and_overlays(self):
+        base = [self.scene(), "--size", "160x120", "--frame", 10]
+        plain = self.shot(*base)[2]
+        maps = [self.shot(*base, "--heat-map", name)[2] for name in ("stretch", "speed", "curvature", "contact")]
+        pins = self.shot(*base, "--overlay", "pins,normals", "--shader", "Phong")[2]
+        fixed = self.shot(*base, "--heat-map", "stretch", "--heat-range", "1,3")[2]
+        pictures = [plain, *maps, pins, fixed]
+        for i, a in enumerate(pictures):
+            for b in pictures[:i]:
+                self.assertNotEqual(a, b)
+        self.assertTrue(any((230, 159, 0) in row for row in pins))
+        # The legend is dark around its bar, in a corner that is empty without one.
+        self.assertEqual(plain[2][2], (64, 64, 64))
+        self.assertEqual(fixed[2][2], (22, 22, 22))
+
+        errors = self.run_program("shot", *base, "--heat-map", "strech", code=2).stderr
+        self.assertIn("did you mean `stretch`?", errors)
+        self.assertIn("did you mean `normals`?", self.run_program("shot", *base, "--overlay", "pins,normal", code=2).stderr)
+        for bad in ("1", "2,1", "1,x", "1,1"):
+            self.assertIn("LOW,HIGH", self.run_program("shot", *base, "--heat-range", bad, code=2).stderr)
+
     def test_default_name(self):
         self.run_program("shot", self.scene("tuch.json"), "--size", "32x32")
         self.assertIn("tuch.png", self.files())

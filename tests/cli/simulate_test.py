@@ -209,6 +209,29 @@ class Streams(ProgramTest):
         self.assertTrue(done.stdout.startswith("frame,cloth,vertex,x,y,z\n2,0,0,"))
         self.assertIn("kinetic energy", done.stderr)
 
+    def test_what_each_frame_did_as_a_table(self):
+        scene = self.scene(damping=0)
+        done = self.run_program("simulate", scene, "--frames", 12, "--csv", "frames.csv", "-o", "points.csv")
+        self.assertIn("written           frames.csv", done.stdout)
+        with open(self.folder / "frames.csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([int(row["frame"]) for row in rows], list(range(1, 13)))
+        for row in rows:
+            self.assertGreaterEqual(float(row["greatest_stretch"]), float(row["stretch_p99"]))
+            self.assertGreater(float(row["elastic_energy_J"]), 0)
+        self.assertAlmostEqual(float(rows[-1]["time_s"]), 12 / 90)
+        self.assertIn(f"kinetic energy    {float(rows[-1]['kinetic_energy_J']):.6g} J", done.stdout)
+        # What falls gives up energy, and the rest of it is found again but for what damping takes.
+        first, last = rows[0], rows[-1]
+        gained = sum(float(last[name]) - float(first[name]) for name in ("kinetic_energy_J", "elastic_energy_J"))
+        given = float(first["potential_energy_J"]) - float(last["potential_energy_J"])
+        self.assertGreater(given, gained)
+        self.assertGreater(gained, 0.8 * given)
+        table = self.run_program("simulate", scene, "--frames", 3, "--csv", "/dev/stdout").stdout
+        self.assertEqual(len(table.splitlines()), 4)
+        self.run_program("simulate", scene, "--frames", 3, "--csv", "none/frames.csv", code=1)
+        self.assertEqual(self.files(), ["frames.csv", "points.csv", "scene.json"])
+
     def test_the_summary_is_on_stdout_and_stderr_is_silent(self):
         done = self.run_program("simulate", self.scene(), "--frames", 5)
         self.assertEqual(done.stderr, "")
