@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "apps/viewer/panels.h"
 #include "apps/viewer/session.h"
 #include "apps/viewer/ui_state.h"
 #include "apps/viewer/viewer.h"
@@ -20,6 +21,17 @@ constexpr Key Control(char character, bool shift = false) {
 }
 constexpr Key Press(SpecialKey special) {
   return {.special = special};
+}
+
+bool ToggleOverlay(Session& session, bool Overlays::*shown) {
+  Overlays overlays = session.view().overlays;
+  overlays.*shown = !(overlays.*shown);
+  session.SetOverlays(overlays);
+  return true;
+}
+
+void LogInspector(Session& session, const UiState& state) {
+  session.log().Write(LogLine("inspector").Flag("visible", state.inspectorVisible).Flag("held", state.inspectorHeld));
 }
 
 // clang-format off
@@ -79,6 +91,41 @@ constexpr Action kActions[] = {
     {.name = "wireframe", .category = "View", .title = "Wireframe", .help = "Springs over any shader",
      .key = Typed('w'),
      .run = [](Session& session, UiState&) { session.ToggleWireframe(); return true; }},
+    {.name = "heat_map", .category = "View", .title = "Heat map",
+     .help = "Next heat map: stretch, compression, speed, curvature, contact, off",
+     .key = Typed('t'), .repeats = true,
+     .run = [](Session& session, UiState&) {
+       const int now = static_cast<int>(session.view().heatMap.quantity);
+       session.SetHeatMap({static_cast<Quantity>((now + 1) % kQuantities), {}});
+       return true;
+     }},
+    {.name = "normals", .category = "View", .title = "Normals", .help = "Normals of the vertices",
+     .run = [](Session& session, UiState&) { return ToggleOverlay(session, &Overlays::normals); }},
+    {.name = "pins", .category = "View", .title = "Pins", .help = "Points that are held",
+     .run = [](Session& session, UiState&) { return ToggleOverlay(session, &Overlays::pins); }},
+    {.name = "contacts", .category = "View", .title = "Contacts", .help = "Points that touch cloth or a collider",
+     .run = [](Session& session, UiState&) { return ToggleOverlay(session, &Overlays::contacts); }},
+    {.name = "boxes", .category = "View", .title = "Boxes of the spatial map",
+     .help = "Boxes of the spatial map that points share",
+     .run = [](Session& session, UiState&) { return ToggleOverlay(session, &Overlays::boxes); }},
+    {.name = "inspector", .category = "View", .title = "Inspector", .help = "Tell of the vertex under the pointer",
+     .key = {.character = 'i', .control = true},
+     .run = [](Session& session, UiState& state) {
+       state.inspectorVisible = !state.inspectorVisible;
+       state.inspectorHeld = false;
+       state.inspectedLogged = {};
+       LogInspector(session, state);
+       return true;
+     }},
+    {.name = "hold_vertex", .category = "View", .title = "Inspector: hold the vertex",
+     .help = "Keep telling of this vertex, or follow the pointer again",
+     .key = {.character = 'i', .control = true, .shift = true},
+     .enabled = [](const Session&, const UiState& state) { return state.inspectorVisible && state.inspected.cloth >= 0; },
+     .run = [](Session& session, UiState& state) {
+       state.inspectorHeld = !state.inspectorHeld;
+       LogInspector(session, state);
+       return true;
+     }},
 
     {.name = "previous_scene", .category = "Scene", .title = "Previous scene",
      .help = "Previous scene file of the folder",
@@ -99,6 +146,18 @@ constexpr Action kActions[] = {
        session.log().Write(LogLine("panels").Flag("visible", state.panelsVisible));
        return true;
      }},
+    {.name = "plots", .category = "Window", .title = "Plots", .help = "Plots of energy, stretch, moves and times",
+     .key = Typed('m'),
+     .run = [](Session& session, UiState& state) {
+       state.plotsVisible = !state.plotsVisible;
+       session.log().Write(
+           LogLine("plots").Flag("visible", state.plotsVisible).Flag("held", state.plotsHeld.has_value()));
+       return true;
+     }},
+    {.name = "export_plots", .category = "Window", .title = "Export the plots",
+     .help = "Write the plots' numbers to a CSV file",
+     .enabled = [](const Session& session, const UiState&) { return !session.frames().rows().empty(); },
+     .run = [](Session& session, UiState& state) { session.ExportPlots(ShownFrames(session, state)); return true; }},
     {.name = "help", .category = "Window", .title = "Help", .help = "Help: keys and mouse",
      .key = Press(F1),
      .run = [](Session& session, UiState& state) {

@@ -28,6 +28,7 @@ constexpr Panel kPanels[] = {
     {"Collisions", false, DrawCollisionsPanel},
     {"Spheres and planes", false, DrawCollidersPanel, HasColliders},
     {"Wind", false, DrawWindPanel},
+    {"Overlays", false, DrawOverlaysPanel},
     {"Statistics", true, DrawStatisticsPanel},
 };
 

@@ -4,6 +4,8 @@
 
 #include <span>
 
+#include "apps/viewer/frame_table.h"
+
 namespace percale::viewer {
 
 class Session;
@@ -29,6 +31,7 @@ void DrawAppearancePanel(Session& session, UiState& state);
 void DrawCollisionsPanel(Session& session, UiState& state);
 void DrawCollidersPanel(Session& session, UiState& state);
 void DrawWindPanel(Session& session, UiState& state);
+void DrawOverlaysPanel(Session& session, UiState& state);
 void DrawStatisticsPanel(Session& session, UiState& state);
 
 /// Width of the column at the right that holds the panels [screen unit].
@@ -41,6 +44,16 @@ void DrawMessages(Session& session, UiState& state, float pictureWidth, float he
 void DrawStatusLine(const Session& session, const UiState& state);
 /// The arrows at a sphere or plane that can be moved, that of `axis` brighter.
 void DrawGizmo(const Gizmo& gizmo, int axis, const UiState& state);
+/// What the colours of a heat map mean, below the status line; nothing without one.
+void DrawHeatLegend(const UiState& state);
+/// The vertex under the pointer, beside it.
+void DrawInspector(Session& session, UiState& state, int pictureWidth, int height);
+/// Energies, stretch, moves and times of the last frames.
+void DrawPlotsWindow(Session& session, UiState& state, float pictureWidth, float height);
+/// The frames that the plots show: the newest, or those that are held.
+std::span<const FrameRow> ShownFrames(Session& session, const UiState& state);
+/// Holds the plots at the frames that they show, or lets them go on.
+void HoldPlots(Session& session, UiState& state, bool hold);
 /// Keys and mouse, in the middle of the picture.
 void DrawHelp(const Session& session, UiState& state, float pictureWidth, float height);
 

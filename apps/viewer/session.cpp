@@ -435,6 +435,29 @@ void Session::ToggleWireframe() {
   if (log_.enabled()) log_.Write(LogLine("wireframe").Flag("visible", view_.wireframe));
 }
 
+void Session::SetHeatMap(const HeatMapSettings& settings) {
+  view_.heatMap = settings;
+  if (!log_.enabled()) return;
+  LogLine line("heat_map");
+  line.Text("quantity", Describe(settings.quantity).name).Flag("fixed", settings.range.has_value());
+  if (settings.range) line.Number("low", settings.range->low).Number("high", settings.range->high);
+  log_.Write(line);
+}
+
+void Session::SetOverlays(const Overlays& overlays) {
+  view_.overlays = overlays;
+  if (!log_.enabled()) return;
+  LogLine line("overlays");
+  for (const OverlayInfo& overlay : AllOverlays()) line.Flag(overlay.name, overlays.*overlay.shown);
+  log_.Write(line);
+}
+
+void Session::ExportPlots(std::span<const FrameRow> rows) {
+  const Result<std::filesystem::path> file = ExportFrames(rows, sceneFile_);
+  messages_.Set("export", file ? Diagnostics{} : file.diagnostics());
+  if (file && log_.enabled()) log_.Write(LogLine("export").Text("file", PathText(*file)));
+}
+
 std::span<const ShaderParameter> Session::ShaderParameters() {
   return shaders_.Parameters(view_.look.shader);
 }
@@ -674,6 +697,7 @@ void Session::ReadSnapshot(double now) {
       messages_.Set("history", {});
     }
   }
+  for (const StepReport& report : snapshot_.reports) frames_.Add(report);
   Diagnostics problems;
   if (const auto& divergence = snapshot_.report.divergence) {
     const std::string where = snapshot_.cloths.size() > 1 ? " of cloth " + std::to_string(divergence->cloth) : "";

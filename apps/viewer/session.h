@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "apps/viewer/file_watch.h"
+#include "apps/viewer/frame_table.h"
 #include "apps/viewer/messages.h"
 #include "apps/viewer/session_log.h"
 #include "apps/viewer/simulation.h"
@@ -93,6 +94,8 @@ class Session {
   void CycleShader(int by);
   /// Draws the springs over any shader, or no longer.
   void ToggleWireframe();
+  void SetHeatMap(const HeatMapSettings& settings);
+  void SetOverlays(const Overlays& overlays);
   std::span<const ShaderParameter> ShaderParameters();  ///< Of the current shader.
   UniformValue Uniform(const ShaderParameter& parameter) const;
   void SetUniform(const ShaderParameter& parameter, const UniformValue& value);
@@ -108,6 +111,10 @@ class Session {
   const std::filesystem::path& sceneFile() const { return sceneFile_; }
 
   const Snapshot& snapshot() const { return snapshot_; }  ///< The newest state.
+  FrameTable& frames() { return frames_; }                ///< What the last frames did.
+  const FrameTable& frames() const { return frames_; }
+  /// Writes some of them as a table into the current folder.
+  void ExportPlots(std::span<const FrameRow> rows);
   Messages& messages() { return messages_; }
   SessionLog& log() { return log_; }
   bool logged() const { return log_.enabled(); }
@@ -156,6 +163,7 @@ class Session {
   bool cameraMoved_ = false;  // By the user.
   bool cameraUnlogged_ = false;
   Snapshot snapshot_;
+  FrameTable frames_;
   UndoStack undo_;
   std::vector<Handle> handles_;
   Simulation simulation_;

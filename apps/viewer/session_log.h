@@ -39,6 +39,12 @@
 ///   mended   source: what messages of that source complained of is over
 ///   reload   what ("scene" or "shaders"), file
 ///   open     scene: another scene file
+///   heat_map quantity ("off", "stretch", ...), fixed, and low, high where the range is fixed
+///   overlays normals, pins, contacts, boxes: whether each is shown
+///   plots    visible, held
+///   export   file: the plots' numbers were written
+///   inspector visible, held
+///   inspect  cloth, vertex: the inspector describes another vertex
 ///   window   width, height [screen units], scale
 ///   panels   visible
 ///   help     visible

@@ -32,7 +32,8 @@ std::vector<T> Copy(std::span<const T> span) {
 
 Simulation::Simulation(Scene scene, SimulationOptions options)
     : options_(std::move(options)),
-      timeline_(std::move(scene), {options_.threads, options_.hashes, options_.historyBudget}) {
+      timeline_(std::move(scene), {options_.threads, options_.hashes, options_.historyBudget,
+                                   [this](const StepReport& report) { reports_.push_back(report); }}) {
   CopyTopologies();
   Publish();
   thread_ = std::thread([this] { Loop(); });
@@ -72,6 +73,7 @@ bool Simulation::TakeSnapshot(Snapshot& snapshot) {
   fresh_ = false;
   std::swap(snapshot, ready_);
   ready_.executed.clear();
+  ready_.reports.clear();
   return true;
 }
 
@@ -182,11 +184,13 @@ void Simulation::CopyTopologies() {
     std::shared_ptr<const ClothTopology>& old = topologies_[static_cast<std::size_t>(c)];
     const ClothView cloth = world.Cloth(c);
     if (old && SameEdges(old->springs, cloth.springs()) && SameTriangles(old->triangles, cloth.triangles()) &&
-        std::equal(old->uv.begin(), old->uv.end(), cloth.uv().begin(), cloth.uv().end())) {
+        std::equal(old->uv.begin(), old->uv.end(), cloth.uv().begin(), cloth.uv().end()) &&
+        std::equal(old->rest.begin(), old->rest.end(), cloth.rest().begin(), cloth.rest().end()) &&
+        std::equal(old->pinned.begin(), old->pinned.end(), cloth.pinned().begin(), cloth.pinned().end())) {
       continue;
     }
-    old = std::make_shared<const ClothTopology>(
-        ClothTopology{Copy(cloth.uv()), Copy(cloth.triangles()), Copy(cloth.springs())});
+    old = std::make_shared<const ClothTopology>(ClothTopology{
+        Copy(cloth.uv()), Copy(cloth.triangles()), Copy(cloth.springs()), Copy(cloth.rest()), Copy(cloth.pinned())});
   }
 }
 
@@ -196,8 +200,9 @@ void Simulation::Publish() {
   back_.scene = world.sharedScene();
   back_.cloths.resize(topologies_.size());
   for (std::size_t c = 0; c < topologies_.size(); ++c) {
-    const std::span<const Vec3> positions = world.Cloth(static_cast<int>(c)).positions();
-    back_.cloths[c].positions.assign(positions.begin(), positions.end());
+    const ClothView cloth = world.Cloth(static_cast<int>(c));
+    back_.cloths[c].positions.assign(cloth.positions().begin(), cloth.positions().end());
+    back_.cloths[c].velocities.assign(cloth.velocities().begin(), cloth.velocities().end());
     back_.cloths[c].topology = topologies_[c];
   }
   back_.balls.assign(world.balls().begin(), world.balls().end());
@@ -213,11 +218,15 @@ void Simulation::Publish() {
     // What was carried out before a snapshot that nobody took is told with this one.
     back_.executed = std::move(ready_.executed);
     back_.executed.insert(back_.executed.end(), executed_.begin(), executed_.end());
+    back_.reports = std::move(ready_.reports);
+    back_.reports.insert(back_.reports.end(), reports_.begin(), reports_.end());
     std::swap(back_, ready_);
     fresh_ = true;
   }
   executed_.clear();
   back_.executed.clear();
+  reports_.clear();
+  back_.reports.clear();
   if (options_.onSnapshot) options_.onSnapshot();
 }
 

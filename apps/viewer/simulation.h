@@ -24,10 +24,13 @@ struct ClothTopology {
   std::vector<Vec2> uv;
   std::vector<Triangle> triangles;
   std::vector<Edge> springs;  ///< Of the enabled kinds.
+  std::vector<Vec3> rest;     ///< The rest shape [m].
+  std::vector<std::int32_t> pinned;
 };
 
 struct ClothCopy {
-  std::vector<Vec3> positions;  ///< [m]
+  std::vector<Vec3> positions;   ///< [m]
+  std::vector<Vec3> velocities;  ///< [m/s]
   std::shared_ptr<const ClothTopology> topology;
 };
 
@@ -38,12 +41,13 @@ struct Snapshot {
   std::vector<Ball> balls;
   StepReport report;
   HistoryInfo history;
-  bool running = false;            ///< In real time.
-  bool looping = false;            ///< Through the history.
-  double frameSeconds = 0;         ///< Wall-clock time of the last frame [s]; 0 before the first.
-  double framesPerSecond = 0;      ///< Simulated in the last half second of running; 0 while paused.
-  std::uint64_t hash = 0;          ///< World::StateHash; 0 unless hashes were asked for.
-  std::vector<Executed> executed;  ///< Since the last snapshot that was taken, in order.
+  bool running = false;             ///< In real time.
+  bool looping = false;             ///< Through the history.
+  double frameSeconds = 0;          ///< Wall-clock time of the last frame [s]; 0 before the first.
+  double framesPerSecond = 0;       ///< Simulated in the last half second of running; 0 while paused.
+  std::uint64_t hash = 0;           ///< World::StateHash; 0 unless hashes were asked for.
+  std::vector<Executed> executed;   ///< Since the last snapshot that was taken, in order.
+  std::vector<StepReport> reports;  ///< Of the frames simulated since then, in order.
 };
 
 struct SimulationOptions {
@@ -95,6 +99,7 @@ class Simulation {
   double frameSeconds_ = 0;
   double framesPerSecond_ = 0;
   std::vector<Executed> executed_;
+  std::vector<StepReport> reports_;
   Clock::time_point nextFrame_, rateSince_;
   int framesSince_ = 0;
 

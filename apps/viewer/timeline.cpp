@@ -100,6 +100,7 @@ bool Timeline::StepFrame() {
   world_.Step();
   if (world_.report().divergence) return false;
   history_.Record(world_);
+  if (options_.onFrame) options_.onFrame(world_.report());
   return true;
 }
 

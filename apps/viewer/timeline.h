@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -73,9 +74,10 @@ struct Executed {
 class Timeline {
  public:
   struct Options {
-    int threads = 0;                ///< Of the World; 0: as many as the machine has cores.
-    bool hashes = false;            ///< Fingerprint every state.
-    std::size_t historyBudget = 0;  ///< [bytes]; 0: no history.
+    int threads = 0;                                      ///< Of the World; 0: as many as the machine has cores.
+    bool hashes = false;                                  ///< Fingerprint every state.
+    std::size_t historyBudget = 0;                        ///< [bytes]; 0: no history.
+    std::function<void(const StepReport&)> onFrame = {};  ///< Called with each new frame.
   };
 
   /// The World of `scene`, which must pass CheckScene, at its start.

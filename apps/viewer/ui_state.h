@@ -6,10 +6,15 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "apps/viewer/frame_table.h"
 #include "apps/viewer/session.h"
+#include "mesh/engine_types.h"
 #include "percale/world.h"
+#include "render/heat_scale.h"
 
 namespace percale::viewer {
 
@@ -35,6 +40,20 @@ struct UiState {
   std::array<double, kStageCount> stageSeconds{};
   double frameSeconds = 0;
   double drawSeconds = 0;  ///< Of a picture and the panels [s].
+
+  /// The colours of the last picture, and the range that is being typed for them.
+  HeatScale heatScale;
+  ValueRange typedRange;
+
+  bool plotsVisible = false;
+  std::optional<std::vector<FrameRow>> plotsHeld;  ///< Shown in place of the newest frames.
+  std::optional<double> plotCursor;                ///< The time that is pointed at [s].
+  std::vector<double> plotRatios;                  ///< Memory for measuring.
+
+  bool inspectorVisible = false;
+  bool inspectorHeld = false;  ///< Stays with the vertex, wherever the pointer is.
+  VertexRef inspected, inspectedLogged;
+  float inspectorSize[2] = {};  ///< As it was last drawn [screen unit].
 
   /// What the pointer rests on, for its tooltip: the control's place, and since when [s].
   float hoveredAt[2] = {-1, -1};

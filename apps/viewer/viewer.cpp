@@ -157,6 +157,7 @@ class Viewer {
     // What the keys and panels have just changed shows at once.
     session_.Update(Now());
     DrawScene();
+    DrawHeatLegend(state_);
     window_.EndPanels();
     window_.SetTitle(session_.Title());
     LogBoxes();
@@ -173,6 +174,8 @@ class Viewer {
       DrawPanelColumn(session_, state_, width, height);
       DrawMessages(session_, state_, static_cast<float>(PictureWidth()), height);
     }
+    DrawPlotsWindow(session_, state_, static_cast<float>(PictureWidth()), height);
+    DrawInspector(session_, state_, PictureWidth(), height_);
     DrawHelp(session_, state_, static_cast<float>(PictureWidth()), height);
   }
 
@@ -190,9 +193,12 @@ class Viewer {
     const Snapshot& snapshot = session_.snapshot();
     shapes_.clear();
     for (const ClothCopy& cloth : snapshot.cloths) {
-      shapes_.push_back({cloth.positions, cloth.topology->uv, cloth.topology->triangles, cloth.topology->springs});
+      const ClothTopology& topology = *cloth.topology;
+      shapes_.push_back({cloth.positions, topology.uv, topology.triangles, topology.springs, topology.rest,
+                         cloth.velocities, topology.pinned});
     }
     const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows, snapshot.balls);
+    state_.heatScale = list.heatScale;
     const Status drawn = device_.Draw(list, columns, rows);
     session_.ReportDrawing(drawn, device_.TakeWarnings());
   }

@@ -81,6 +81,9 @@ TEST_CASE("steps, reset and settings give what a World gives") {
   CHECK(done.frame == 3);
   CHECK(done.hash == HashAfter(scene, 3));
   CHECK(snapshot.hash == done.hash);
+  REQUIRE(snapshot.reports.size() == 3);  // none is lost, though no picture showed the first two
+  for (int i = 0; i < 3; ++i) CHECK(snapshot.reports[static_cast<std::size_t>(i)].frame == i + 1);
+  CHECK(snapshot.cloths[0].velocities.size() == 144);
 
   World world(scene, {.threads = 1});
   for (int i = 0; i < 3; ++i) world.Step();

@@ -1,0 +1,46 @@
+#include "apps/viewer/frame_table.h"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "io/atomic_file.h"
+#include "io/report_table.h"
+
+namespace percale::viewer {
+
+void FrameTable::Add(const StepReport& report) {
+  while (!rows_.empty() && rows_.back().report.frame >= report.frame) rows_.pop_back();
+  if (rows_.empty()) potentialAtStart_ = report.potentialEnergy;
+  if (rows_.size() == 2 * kFrames) rows_.erase(rows_.begin(), rows_.begin() + kFrames);
+  rows_.push_back({report, std::nullopt});
+}
+
+void FrameTable::SetStretch99(int frame, double stretch99) {
+  const auto row = std::lower_bound(rows_.begin(), rows_.end(), frame,
+                                    [](const FrameRow& r, int number) { return r.report.frame < number; });
+  if (row != rows_.end() && row->report.frame == frame) row->stretch99 = stretch99;
+}
+
+std::span<const FrameRow> FrameTable::rows() const {
+  return std::span(rows_).last(std::min(rows_.size(), kFrames));
+}
+
+Result<std::filesystem::path> ExportFrames(std::span<const FrameRow> rows, const std::filesystem::path& sceneFile) {
+  std::filesystem::path file;
+  std::error_code ignored;
+  for (int n = 1; file.empty() || std::filesystem::exists(file, ignored); ++n) {
+    file = sceneFile.stem();
+    file += "-plots-" + std::to_string(n) + ".csv";
+  }
+  Result<AtomicFile> table = AtomicFile::Create(file);
+  if (!table) return table.diagnostics();
+  std::string text = ReportTableHeader();
+  for (const FrameRow& row : rows) text += ReportTableRow(row.report, row.stretch99);
+  if (const Status written = table->Write(text); !written) return written.diagnostics();
+  if (const Status committed = table->Commit(); !committed) return committed.diagnostics();
+  return file;
+}
+
+}  // namespace percale::viewer
