@@ -31,8 +31,10 @@ namespace {
 constexpr int kExitFailed = 1, kExitBadInput = 3, kExitNoGraphics = 5, kExitInterrupted = 130;
 /// Pictures are drawn no more often than this, where the display does not hold them back itself [1/s].
 constexpr double kMostPictures = 120;
-/// After the last sign of life pictures are drawn for so long, then only when there is something new [s].
+/// After the last sign of life pictures are drawn for so long [s], and at least so many, since windows
+/// take that many to find their size; then only when there is something new.
 constexpr double kActiveTime = 0.5;
+constexpr int kActivePictures = 3;
 /// How long to sleep at most when nothing happens: files are to be looked at [s].
 constexpr double kSleep = 0.05;
 /// Share of a new value in the smoothed times.
@@ -78,13 +80,17 @@ class Viewer {
   int Run() {
     window_.Show();
     double activeUntil = 0, nextPicture = 0;
+    int picturesDue = 0;
     while (!window_.ShouldClose() && !state_.quit && !interrupted) {
       double now = Now();
-      window_.WaitForEvents(now < activeUntil ? nextPicture - now : kSleep);
+      window_.WaitForEvents(now < activeUntil || picturesDue > 0 ? nextPicture - now : kSleep);
       now = Now();
       const bool news = session_.Update(now);
-      if (window_.TakeActivity() || news) activeUntil = now + kActiveTime;
-      if (now >= activeUntil && !typing_) continue;
+      if (window_.TakeActivity() || news) {
+        activeUntil = now + kActiveTime;
+        picturesDue = kActivePictures;
+      }
+      if (now >= activeUntil && picturesDue <= 0 && !typing_) continue;
       if (now < nextPicture) continue;
       nextPicture = now + 1 / kMostPictures;
       if (window_.Minimized()) {
@@ -93,6 +99,7 @@ class Viewer {
         continue;
       }
       DrawPicture();
+      --picturesDue;
     }
     // A large cloth may need a while to finish its frame: the window need not stay for that.
     window_.Hide();
