@@ -30,6 +30,6 @@ install(FILES ${PROJECT_BINARY_DIR}/percaleConfig.cmake ${PROJECT_BINARY_DIR}/pe
 
 if(TARGET percale_program)
   install(TARGETS percale_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-  install(DIRECTORY scene shaders textures DESTINATION ${CMAKE_INSTALL_DATADIR}/percale COMPONENT program
+  install(DIRECTORY presets scene shaders textures DESTINATION ${CMAKE_INSTALL_DATADIR}/percale COMPONENT program
     PATTERN "*.py" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 endif()

@@ -104,6 +104,11 @@ class Builder {
         "Sets a parameter, such as --set cloth.ks=500 or --set cloth.1.ks=500; may be repeated, the later wins",
         options_.set, "Scene")
         ->type_name("PATH=VALUE");
+    Add(app, "--preset",
+        "Values of presets/NAME.json, or of a file NAME.json, for what the scene file does not state; may be "
+        "repeated, the later wins. --set preset=NAME wins over the scene file as well",
+        options_.presets, "Scene")
+        ->type_name("NAME");
     app.add_flag("--print-config", options_.printConfig,
                  "Prints every parameter, its value and where that comes from, and ends")
         ->group("Scene");
@@ -235,6 +240,7 @@ class Builder {
          [this](const std::string& text) {
            const std::vector<std::string> parts = Split(text, 'x');
            if (parts.size() != 2) Refuse("--size", "WIDTHxHEIGHT such as 1024x800", text);
+           options_.sizeGiven = true;
            options_.width = Whole("--size", parts[0], 1, kLargestPicture);
            options_.height = Whole("--size", parts[1], 1, kLargestPicture);
          });
@@ -278,6 +284,12 @@ class Builder {
          [this](const std::string& text) {
            options_.historyMegabytes = Number("--history", text, 0, 1e6, "a number of megabytes 0..1e6");
          });
+    app.add_flag("--fresh", options_.fresh,
+                 "Starts without what the viewer has kept from the last time, and keeps nothing")
+        ->group("Viewer");
+    Call(app, "--ui-scale", "Size of the viewer's text and controls, 0.5 to 4; default: as the display asks for", "S",
+         "Viewer",
+         [this](const std::string& text) { options_.uiScale = Number("--ui-scale", text, 0.5, 4, "a number 0.5..4"); });
     app.add_flag("--keys", options_.keys, "Prints the viewer's keys as a table, and ends")->group("Viewer");
   }
 

@@ -37,10 +37,11 @@ struct Options {
   Verb verb = Verb::View;
   bool bare = false;  ///< Neither verb nor scene was named.
 
-  std::string scene;               ///< File as given; empty: the default scene.
-  std::vector<std::string> files;  ///< Of check and info.
-  std::string root;                ///< -r; empty: search for it.
-  std::vector<std::string> set;    ///< "PATH=VALUE", in order.
+  std::string scene;                 ///< File as given; empty: the default scene.
+  std::vector<std::string> files;    ///< Of check and info.
+  std::string root;                  ///< -r; empty: search for it.
+  std::vector<std::string> presets;  ///< --preset, in order: below the scene file.
+  std::vector<std::string> set;      ///< "PATH=VALUE" or "preset=NAME", in order: above it.
   bool printConfig = false;
   int threads = 0;  ///< 0: as many as there are cores.
   ProgressKind progress = ProgressKind::Automatic;
@@ -58,6 +59,7 @@ struct Options {
   int longitudes = 40;          ///< -o with a whole number.
   int width = 1024;             ///< [pixel]
   int height = 800;             ///< [pixel]
+  bool sizeGiven = false;       ///< --size
   std::optional<int> samples;   ///< Per pixel; none: 4, or for the viewer what the card does well.
   double framesPerSecond = 30;  ///< Of a video.
   std::string shader;           ///< Empty: the scene's.
@@ -72,6 +74,8 @@ struct Options {
   std::string log;                ///< view --log
   double historyMegabytes = 256;  ///< view --history
   bool keys = false;              ///< view --keys
+  bool fresh = false;             ///< view --fresh
+  std::optional<double> uiScale;  ///< view --ui-scale
 
   std::vector<int> figures;  ///< figures --only, ascending; empty: all.
 

@@ -118,6 +118,21 @@ std::optional<std::string> Environment(const char* name) {
   return value && *value ? std::optional<std::string>(value) : std::nullopt;
 }
 
+fs::path ConfigFolder() {
+  if (const auto folder = Environment("PERCALE_CONFIG_DIR")) return TextPath(*folder);
+#if defined(_WIN32)
+  if (const wchar_t* folder = _wgetenv(L"APPDATA")) return fs::path(folder) / "percale";
+#elif defined(__APPLE__)
+  if (const auto home = Environment("HOME")) return TextPath(*home) / "Library" / "Application Support" / "percale";
+#else
+  // A relative path is to be ignored, says the specification.
+  if (const auto folder = Environment("XDG_CONFIG_HOME"); folder && TextPath(*folder).is_absolute())
+    return TextPath(*folder) / "percale";
+  if (const auto home = Environment("HOME")) return TextPath(*home) / ".config" / "percale";
+#endif
+  return {};
+}
+
 std::string SystemName() {
   std::string name =
 #if defined(_WIN32)

@@ -35,6 +35,10 @@ bool HasDisplay();
 /// An environment variable; nothing when it is not set or empty.
 std::optional<std::string> Environment(const char* name);
 
+/// The folder of the user's own settings and presets: PERCALE_CONFIG_DIR, or where the system keeps such
+/// things. It need not exist yet; empty when the system does not tell.
+std::filesystem::path ConfigFolder();
+
 /// "Linux x86-64", "macOS arm64", ...
 std::string SystemName();
 

@@ -24,6 +24,77 @@ bool IsRoot(const fs::path& folder) {
   return fs::is_directory(folder / "shaders", code) && fs::is_directory(folder / "scene", code);
 }
 
+/// A preset that an option names. On failure prints what is wrong and returns the exit code.
+std::variant<Preset, int> ReadPreset(const Options& options, const std::string& option, const std::string& name) {
+  auto preset = FindPreset(name, PresetFolders(options));
+  if (preset) return *preset;
+  Diagnostics errors = preset.diagnostics();
+  const bool hasPlace = !errors.front().place.file.empty();
+  for (Diagnostic& error : errors) {
+    if (error.place.file.empty()) error.message = option + ": " + error.message;
+  }
+  PrintDiagnostics(errors);
+  return hasPlace ? kInvalid : kUsage;
+}
+
+/// "a.json:3:7"
+std::string PlaceText(const Place& place) {
+  return place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+}
+
+/// Sets what the presets state and the scene file does not. Returns an exit code.
+int ApplyPresets(const Options& options, Session& session) {
+  for (const std::string& name : options.presets) {
+    auto read = ReadPreset(options, "--preset", name);
+    if (const int* code = std::get_if<int>(&read)) return *code;
+    const Preset& preset = std::get<Preset>(read);
+    std::vector<PresetAssignment> givesWay;
+    for (const PresetAssignment& set : ApplyBelow(preset, session.origins, session.scene, &givesWay)) {
+      session.assignments[set.path] = "--preset " + ShellWord(name) + ", " + PlaceText(set.place);
+    }
+    if (!givesWay.empty()) {
+      std::string paths;
+      for (const PresetAssignment& way : givesWay) paths += (paths.empty() ? "" : ", ") + way.path;
+      Diagnostic note = MakeWarning("--preset " + ShellWord(name) + ": the scene file states " + paths +
+                                    " itself, which wins; with --set preset=" + ShellWord(name) + " the preset does");
+      note.severity = Severity::Note;
+      PrintDiagnostics({note});
+    }
+    session.presets.push_back(preset);
+  }
+  return kDone;
+}
+
+/// Applies the assignments. Returns an exit code.
+int ApplySettings(const Options& options, Session& session) {
+  constexpr std::string_view kPreset = "preset=";
+  for (const std::string& option : options.set) {
+    const std::string origin = "--set " + ShellWord(option);
+    if (option.rfind(kPreset, 0) == 0) {
+      auto read = ReadPreset(options, "--set preset", option.substr(kPreset.size()));
+      if (const int* code = std::get_if<int>(&read)) return *code;
+      for (const PresetAssignment& set : Assignments(std::get<Preset>(read), session.scene)) {
+        set.parameter->set(session.scene, static_cast<std::size_t>(set.index), set.value);
+        session.assignments[set.path] = origin + ", " + PlaceText(set.place);
+        std::string path = set.path.substr(1);
+        std::replace(path.begin(), path.end(), '/', '.');
+        session.set.push_back(path + "=" + FormatValue(set.value));
+      }
+      continue;
+    }
+    const auto paths = ApplyAssignment(session.scene, option);
+    if (!paths) {
+      Diagnostics errors = paths.diagnostics();
+      for (Diagnostic& error : errors) error.message = "--set " + error.message;
+      PrintDiagnostics(errors);
+      return kUsage;
+    }
+    for (const std::string& path : *paths) session.assignments[path] = origin;
+    session.set.push_back(option);
+  }
+  return kDone;
+}
+
 /// The key of a parameter as --set takes it: "cloth.ks", or "cloth.1.ks" where there are several.
 std::string SetPath(const Parameter& parameter, const ParameterGroup& group, std::size_t index, std::size_t count) {
   std::string path(parameter.group);
@@ -108,25 +179,18 @@ std::variant<Session, int> OpenSession(const Options& options) {
   session.scene = std::move(*scene);
   Diagnostics warnings = scene.diagnostics();
 
-  for (const std::string& assignment : options.set) {
-    const auto paths = ApplyAssignment(session.scene, assignment);
-    if (!paths) {
-      Diagnostics errors = paths.diagnostics();
-      for (Diagnostic& error : errors) error.message = "--set " + error.message;
-      PrintDiagnostics(errors);
-      return kUsage;
-    }
-    for (const std::string& path : *paths) session.assignments[path] = "--set " + ShellWord(assignment);
-  }
+  if (const int code = ApplyPresets(options, session); code != kDone) return code;
+  if (const int code = ApplySettings(options, session); code != kDone) return code;
   if (!options.shader.empty()) {
     session.scene.look.shader = options.shader;
     session.assignments["/look/shader"] = "--shader " + ShellWord(options.shader);
   }
-  if (!options.set.empty()) {
+  if (!options.set.empty() || !options.presets.empty()) {
     // What the file's warnings said may no longer hold.
     warnings = CheckScene(session.scene);
     for (Diagnostic& warning : warnings) {
-      if (warning.place.file.empty()) warning.place.file = PathText(session.file) + " with --set";
+      if (warning.place.file.empty())
+        warning.place.file = PathText(session.file) + (options.set.empty() ? " with --preset" : " with --set");
     }
   }
   PrintDiagnostics(warnings);
@@ -136,6 +200,13 @@ std::variant<Session, int> OpenSession(const Options& options) {
     return kDone;
   }
   return session;
+}
+
+std::vector<fs::path> PresetFolders(const Options& options) {
+  std::vector<fs::path> folders;
+  if (const fs::path folder = ConfigFolder(); !folder.empty()) folders.push_back(folder / "presets");
+  if (const auto root = FindRoot(options.root)) folders.push_back(*root / "presets");
+  return folders;
 }
 
 Scene SeenScene(const Options& options, const Scene& scene) {
@@ -175,8 +246,7 @@ void PrintConfiguration(const Options& options, const Session& session) {
       if (const auto set = assignments.find(path); set != assignments.end()) {
         row.origin = set->second;
       } else if (const auto place = session.origins.find(path); place != session.origins.end()) {
-        row.origin =
-            place->second.file + ":" + std::to_string(place->second.line) + ":" + std::to_string(place->second.column);
+        row.origin = PlaceText(place->second);
       } else {
         // Such as camera.automatic where the camera is stated.
         const bool isDefault = parameter.get(scene, i) == DefaultValue(parameter);
@@ -205,6 +275,7 @@ std::string ShellWord(const std::string& word) {
 
 std::string SceneArguments(const Options& options, const Session& session) {
   std::string text = ShellWord(PathText(session.file));
+  for (const std::string& preset : options.presets) text += " --preset " + ShellWord(preset);
   for (const std::string& assignment : options.set) text += " --set " + ShellWord(assignment);
   return text;
 }

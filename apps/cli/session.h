@@ -8,20 +8,24 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "apps/cli/options.h"
+#include "io/preset_file.h"
 #include "percale/diagnostic.h"
 #include "percale/scene.h"
 #include "percale/scene_file.h"
 
 namespace percale::cli {
 
-/// A scene with the command line's assignments applied.
+/// A scene with the command line's presets and assignments applied.
 struct Session {
   Scene scene;
   std::filesystem::path file;
+  std::vector<Preset> presets;                     ///< Of --preset.
+  std::vector<std::string> set;                    ///< Of --set, presets there replaced by what they set.
   Origins origins;                                 ///< Places in the file.
-  std::map<std::string, std::string> assignments;  ///< By path ("/cloth/0/ks"): the option that won, as typed.
+  std::map<std::string, std::string> assignments;  ///< By path ("/cloth/0/ks"): the option that won.
 };
 
 /// Messages to stderr; those that concern no file are marked as the program's.
@@ -39,6 +43,9 @@ std::variant<Session, int> OpenSession(const Options& options);
 /// The scene file that is meant: a name that does not lead to a file from here is also tried from
 /// the project's folder.
 Result<std::filesystem::path> ResolveScene(const Options& options, const std::string& name);
+
+/// Where presets are: the user's own, then the project's.
+std::vector<std::filesystem::path> PresetFolders(const Options& options);
 
 /// The scene with the camera that the command line asks for.
 Scene SeenScene(const Options& options, const Scene& scene);

@@ -29,7 +29,7 @@ class Docs(unittest.TestCase):
         found = list(commands())
         self.assertGreaterEqual(len(found), 6)
         with tempfile.TemporaryDirectory() as folder:
-            for name in ("scene", "shaders", "textures"):
+            for name in ("presets", "scene", "shaders", "textures"):
                 os.symlink(ROOT / name, pathlib.Path(folder) / name)
             for file, arguments in found:
                 with self.subTest(file=file, command=" ".join(arguments)):
