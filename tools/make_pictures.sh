@@ -25,7 +25,7 @@ read -r display <&3
 trap 'kill $(jobs -p) 2>/dev/null || true; pkill -f "Xvfb -displayfd 1 -screen 0 1280x1024x24" || true' EXIT
 export DISPLAY=:$display
 log=$(mktemp)
-"$percale" view scene/sphere.json --shader Bump --log "$log" &
+"$percale" view scene/sphere.json --fresh --shader Bump --log "$log" &
 viewer=$!
 until grep -q '"widget"' "$log"; do sleep 0.2; done
 window=$(xdotool search --onlyvisible --pid $viewer | head -n 1)

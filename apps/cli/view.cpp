@@ -45,7 +45,8 @@ int View(const Options& options) {
   ViewerOptions viewer;
   viewer.scene = session.scene;
   viewer.sceneFile = session.file;
-  viewer.set = options.set;
+  viewer.presets = session.presets;
+  viewer.set = session.set;
   viewer.root = *root;
   viewer.view = MakeView(options, session.scene);
   if (!options.uniforms.empty()) {
@@ -53,8 +54,14 @@ int View(const Options& options) {
     const int code = ApplyUniforms(options, shaders.Parameters(viewer.view.look.shader), viewer.view);
     if (code != kDone) return code;
   }
-  viewer.width = options.width;
-  viewer.height = options.height;
+  if (options.sizeGiven) {
+    viewer.width = options.width;
+    viewer.height = options.height;
+  }
+  viewer.uiScale = options.uiScale.value_or(0);
+  const fs::path config = ConfigFolder();
+  if (!options.fresh && !config.empty()) viewer.settings = config / "viewer.json";
+  viewer.presetFolders = PresetFolders(options);
   viewer.samples = options.samples.value_or(0);
   viewer.threads = options.threads;
   viewer.historyBudget = static_cast<std::size_t>(options.historyMegabytes * (1 << 20));

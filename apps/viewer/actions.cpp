@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "apps/viewer/panels.h"
+#include "apps/viewer/presets.h"
 #include "apps/viewer/session.h"
 #include "apps/viewer/ui_state.h"
 #include "apps/viewer/viewer.h"
@@ -32,9 +34,19 @@ bool ToggleOverlay(Session& session, bool Overlays::*shown) {
 
 void LogInspector(Session& session, const UiState& state) {
   session.log().Write(LogLine("inspector").Flag("visible", state.inspectorVisible).Flag("held", state.inspectorHeld));
-}
+  /// From the picture to the panels, to the console, to the picture, past what cannot be seen.
+  void MoveKeyboard(UiState & state) {
+    KeyboardIn& in = state.keyboardIn;
+    if (in == KeyboardIn::Picture && state.kept.panelsVisible)
+      in = KeyboardIn::Panels;
+    else if (in != KeyboardIn::Console && state.kept.consoleVisible)
+      in = KeyboardIn::Console;
+    else
+      in = KeyboardIn::Picture;
+    state.keyboardMoves = kKeyboardMoves;
+  }
 
-// clang-format off
+  // clang-format off
 constexpr Action kActions[] = {
     {.name = "pause", .category = "Simulation", .title = "Run or pause", .help = "Run or pause the simulation",
      .key = Typed('p'),
@@ -138,12 +150,39 @@ constexpr Action kActions[] = {
      .help = "Read scene, shaders, textures again",
      .key = Press(F5),
      .run = [](Session& session, UiState&) { session.Reload(); return true; }},
+    {.name = "save_preset", .category = "Scene", .title = "Save as preset",
+     .help = "Save what differs from the scene file as a preset",
+     .run = [](Session& session, UiState& state) {
+       if (state.presetFolders.empty()) return false;
+       return SavePreset(std::exchange(state.presetName, {}), state.presetFolders.front(), session);
+     }},
 
+    {.name = "palette", .category = "Window", .title = "Find any command",
+     .help = "Find any command, parameter, shader, scene or preset",
+     .key = Control('k'),
+     .run = [](Session& session, UiState& state) {
+       if (state.palette.open)
+         ClosePalette(session, state);
+       else
+         OpenPalette(session, state);
+       return true;
+     }},
+    {.name = "focus", .category = "Window", .title = "Keys to panels or picture",
+     .help = "Keyboard into the panels and back: arrows, Enter; Esc returns",
+     .key = Press(F6), .otherKey = {.special = Tab, .control = true},
+     .run = [](Session&, UiState& state) { MoveKeyboard(state); return true; }},
+    {.name = "console", .category = "Window", .title = "Console", .help = "All messages of this session",
+     .key = Typed('c'),
+     .run = [](Session& session, UiState& state) {
+       state.kept.consoleVisible = !state.kept.consoleVisible;
+       session.log().Write(LogLine("console").Flag("visible", state.kept.consoleVisible));
+       return true;
+     }},
     {.name = "panels", .category = "Window", .title = "Hide or show the panels", .help = "Hide or show the panels",
      .key = Press(Tab),
      .run = [](Session& session, UiState& state) {
-       state.panelsVisible = !state.panelsVisible;
-       session.log().Write(LogLine("panels").Flag("visible", state.panelsVisible));
+       state.kept.panelsVisible = !state.kept.panelsVisible;
+       session.log().Write(LogLine("panels").Flag("visible", state.kept.panelsVisible));
        return true;
      }},
     {.name = "plots", .category = "Window", .title = "Plots", .help = "Plots of energy, stretch, moves and times",
@@ -169,32 +208,32 @@ constexpr Action kActions[] = {
      .key = Press(Escape),
      .run = [](Session&, UiState& state) { state.quit = true; return true; }},
 };
-// clang-format on
+  // clang-format on
 
-constexpr MouseHelp kMouse[] = {
-    {"Left drag", "Turn the view"},
-    {"Right drag, Ctrl + left drag", "Shift the view"},
-    {"Wheel", "Nearer and farther"},
-    {"Shift + left drag", "Drag cloth, pin, sphere or plane"},
-    {"Shift + click", "Pin the cloth, or let it go"},
-    {"Drag an arrow", "Move a sphere or plane along an axis"},
-    {"Drop a scene file", "Open it"},
-};
+  constexpr MouseHelp kMouse[] = {
+      {"Left drag", "Turn the view"},
+      {"Right drag, Ctrl + left drag", "Shift the view"},
+      {"Wheel", "Nearer and farther"},
+      {"Shift + left drag", "Drag cloth, pin, sphere or plane"},
+      {"Shift + click", "Pin the cloth, or let it go"},
+      {"Drag an arrow", "Move a sphere or plane along an axis"},
+      {"Drop a scene file", "Open it"},
+  };
 
-std::string_view SpecialName(SpecialKey special) {
-  constexpr std::string_view kNames[] = {"",      "Esc", "Tab",  "Enter", "Delete", "Home", "End", "Left",
-                                         "Right", "Up",  "Down", "F1",    "F2",     "F3",   "F4",  "F5",
-                                         "F6",    "F7",  "F8",   "F9",    "F10",    "F11",  "F12"};
-  static_assert(std::size(kNames) == static_cast<std::size_t>(F12) + 1);
-  return kNames[static_cast<std::size_t>(special)];
-}
+  std::string_view SpecialName(SpecialKey special) {
+    constexpr std::string_view kNames[] = {"",      "Esc", "Tab",  "Enter", "Delete", "Home", "End", "Left",
+                                           "Right", "Up",  "Down", "F1",    "F2",     "F3",   "F4",  "F5",
+                                           "F6",    "F7",  "F8",   "F9",    "F10",    "F11",  "F12"};
+    static_assert(std::size(kNames) == static_cast<std::size_t>(F12) + 1);
+    return kNames[static_cast<std::size_t>(special)];
+  }
 
-char Upper(char c) {
-  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-}
-char Lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
+  char Upper(char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  }
+  char Lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
 
 }  // namespace
 
@@ -229,6 +268,7 @@ std::string KeysText(const Action& action) {
 void RunAction(const Action& action, Session& session, UiState& state) {
   // The line comes before what the action causes, so a refusal has one of its own.
   session.log().Write(LogLine("action").Text("name", action.name).Text("key", KeyText(action.key)));
+  NoteUsed(action.name, state);
   const bool can = !action.enabled || action.enabled(session, state);
   if (!can || !action.run(session, state)) session.log().Write(LogLine("ignored").Text("name", action.name));
 }
@@ -249,6 +289,10 @@ bool BelongsToTextInput(const Key& key) {
   if (key.special != None) return key.special < F1;
   // Mark all, copy, paste, cut, redo, undo.
   return !key.control || std::string_view("acvxyz").find(Lower(key.character)) != std::string_view::npos;
+}
+
+bool BelongsToControls(const Key& key) {
+  return key.special == None ? key.character == ' ' && !key.control : BelongsToTextInput(key);
 }
 
 }  // namespace percale::viewer

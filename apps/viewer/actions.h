@@ -71,4 +71,7 @@ void RunAction(const Key& key, bool repeated, Session& session, UiState& state);
 /// run actions even then.
 bool BelongsToTextInput(const Key& key);
 
+/// Whether controls that have the keyboard use the key: to move among them, to press and to set them.
+bool BelongsToControls(const Key& key);
+
 }  // namespace percale::viewer

@@ -1,13 +1,10 @@
 #include "apps/viewer/messages.h"
 
 #include <algorithm>
-#include <cstddef>
+#include <cstdio>
 
 namespace percale::viewer {
 namespace {
-
-/// So many that are over are kept at most: the oldest go first.
-constexpr std::size_t kMostOver = 200;
 
 bool Same(const Diagnostic& a, const Diagnostic& b) {
   return a.severity == b.severity && a.message == b.message && a.place.file == b.place.file &&
@@ -16,55 +13,63 @@ bool Same(const Diagnostic& a, const Diagnostic& b) {
 
 }  // namespace
 
+const char* SeverityName(Severity severity) {
+  return severity == Severity::Error ? "error" : severity == Severity::Warning ? "warning" : "note";
+}
+
 void Messages::Set(const std::string& source, const Diagnostics& diagnostics, bool replace) {
   const bool held = Holds(source);
-  const auto remains = [&](const Message& m) {
-    return std::any_of(diagnostics.begin(), diagnostics.end(),
-                       [&](const Diagnostic& d) { return Same(d, m.diagnostic); });
+  const auto isOver = [&](const Message& m) {
+    return m.source == source && std::none_of(diagnostics.begin(), diagnostics.end(),
+                                              [&](const Diagnostic& d) { return Same(d, m.diagnostic); });
   };
-  for (Message& message : list_) {
-    if (message.source == source && !message.over && !remains(message)) message.over = true;
-  }
-  if (replace) {
-    list_.erase(
-        std::remove_if(list_.begin(), list_.end(), [&](const Message& m) { return m.source == source && m.over; }),
-        list_.end());
-  }
+  list_.erase(std::remove_if(list_.begin(), list_.end(), isOver), list_.end());
   for (const Diagnostic& diagnostic : diagnostics) {
     const bool known = std::any_of(list_.begin(), list_.end(), [&](const Message& m) {
-      return m.source == source && !m.over && Same(m.diagnostic, diagnostic);
+      return m.source == source && Same(m.diagnostic, diagnostic);
     });
-    if (!known) Add(source, diagnostic);
+    if (!known) Tell(source, diagnostic, replace);
   }
   if (held && diagnostics.empty() && listener_) listener_(source, nullptr);
+}
 
-  std::size_t over =
-      static_cast<std::size_t>(std::count_if(list_.begin(), list_.end(), [](const Message& m) { return m.over; }));
-  for (auto m = list_.begin(); over > kMostOver && m != list_.end();) {
-    if (!m->over) {
-      ++m;
-      continue;
-    }
-    m = list_.erase(m);
-    --over;
+void Messages::Tell(const std::string& source, Diagnostic diagnostic, bool replace) {
+  const double now = Now();
+  list_.push_back({source, diagnostic, now, 1});
+  const auto told = std::find_if(history_.begin(), history_.end(), [&](const Message& m) {
+    return m.source == source && (Same(m.diagnostic, diagnostic) || (replace && &m == &history_.back()));
+  });
+  if (told != history_.end()) {
+    told->diagnostic = diagnostic;
+    told->time = now;
+    ++told->count;
+    std::rotate(told, told + 1, history_.end());  // The newest is the last.
+  } else {
+    history_.push_back(list_.back());
   }
-}
-
-void Messages::Add(const std::string& source, Diagnostic diagnostic) {
-  list_.push_back({source, std::move(diagnostic), false});
-  if (listener_) listener_(source, &list_.back().diagnostic);
-}
-
-void Messages::ClearOver() {
-  list_.erase(std::remove_if(list_.begin(), list_.end(), [](const Message& m) { return m.over; }), list_.end());
-}
-
-int Messages::HoldingCount() const {
-  return static_cast<int>(std::count_if(list_.begin(), list_.end(), [](const Message& m) { return !m.over; }));
+  if (listener_) listener_(source, &diagnostic);
 }
 
 bool Messages::Holds(const std::string& source) const {
-  return std::any_of(list_.begin(), list_.end(), [&](const Message& m) { return m.source == source && !m.over; });
+  return std::any_of(list_.begin(), list_.end(), [&](const Message& m) { return m.source == source; });
+}
+
+double Messages::Now() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+std::string ConsoleLine(const Message& message) {
+  const Diagnostic& d = message.diagnostic;
+  char time[40];
+  std::snprintf(time, sizeof time, "%.1f s", message.time);
+  std::string line = std::string(time) + "  " + SeverityName(d.severity) + "  " + message.source + "  ";
+  if (!d.place.file.empty()) line += d.place.file + ":";
+  if (d.place.line > 0) line += std::to_string(d.place.line) + ":";
+  if (d.place.column > 0) line += std::to_string(d.place.column) + ":";
+  if (!d.place.file.empty()) line += " ";
+  line += d.message;
+  if (message.count > 1) line += "  (" + std::to_string(message.count) + " times)";
+  return line;
 }
 
 }  // namespace percale::viewer

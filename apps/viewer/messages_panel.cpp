@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "apps/viewer/panels.h"
+#include "apps/viewer/style.h"
 #include "apps/viewer/widgets.h"
 
 namespace percale::viewer {
@@ -12,30 +14,16 @@ namespace {
 constexpr float kWidest = 620, kMargin = 10;  // [screen unit at scale 1]
 constexpr float kHighest = 0.4f;              // Of the window.
 
-ImVec4 ColorOf(const Message& message) {
-  if (message.over) return ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled);
-  switch (message.diagnostic.severity) {
-    case Severity::Error:
-      return {1.0f, 0.52f, 0.45f, 1};
-    case Severity::Warning:
-      return {1.0f, 0.80f, 0.35f, 1};
-    case Severity::Note:
-      break;
-  }
-  return ImGui::GetStyleColorVec4(ImGuiCol_Text);
-}
+constexpr double kNoteTime = 8;  // A note is shown for so long [s].
 
-const char* WordOf(const Message& message) {
-  if (message.over) return "over:";
-  switch (message.diagnostic.severity) {
-    case Severity::Error:
-      return "error:";
-    case Severity::Warning:
-      return "warning:";
-    case Severity::Note:
-      break;
+/// What is wrong now, and what was noted a moment ago.
+std::vector<const Message*> ShownMessages(const Messages& messages) {
+  std::vector<const Message*> shown;
+  for (const Message& message : messages.list()) {
+    const bool isNote = message.diagnostic.severity == Severity::Note;
+    if (!isNote || messages.Now() - message.time < kNoteTime) shown.push_back(&message);
   }
-  return "note:";
+  return shown;
 }
 
 std::string PlaceText(const Place& place) {
@@ -46,26 +34,24 @@ std::string PlaceText(const Place& place) {
 }
 
 void DrawMessage(const Message& message) {
-  ImGui::PushStyleColor(ImGuiCol_Text, ColorOf(message));
-  ImGui::TextUnformatted(WordOf(message));
+  const Diagnostic& d = message.diagnostic;
+  ImGui::PushStyleColor(ImGuiCol_Text, SeverityColor(d.severity));
+  ImGui::TextUnformatted((std::string(SeverityName(d.severity)) + ":").c_str());
   ImGui::PopStyleColor();
   ImGui::SameLine();
-  if (message.over) ImGui::PushStyleColor(ImGuiCol_Text, ColorOf(message));
-  const Diagnostic& d = message.diagnostic;
   Wrapped(PlaceText(d.place) + d.message);
-  if (!d.excerpt.empty() && !message.over) {
+  if (!d.excerpt.empty()) {
     ImGui::Indent();
     Wrapped(d.excerpt);
     ImGui::Unindent();
   }
-  if (message.over) ImGui::PopStyleColor();
 }
 
 }  // namespace
 
 void DrawMessages(Session& session, UiState& state, float pictureWidth, float height) {
-  Messages& messages = session.messages();
-  if (messages.list().empty()) return;
+  const std::vector<const Message*> shown = ShownMessages(session.messages());
+  if (shown.empty() || state.kept.consoleVisible) return;
   const float margin = kMargin * state.scale;
   const float width = std::min(pictureWidth - 2 * margin, kWidest * state.scale);
   if (width < 100 * state.scale) return;
@@ -75,20 +61,13 @@ void DrawMessages(Session& session, UiState& state, float pictureWidth, float he
                                       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
                                       ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
   if (ImGui::Begin("Messages", nullptr, kFlags)) {
-    const int holding = messages.HoldingCount();
-    const int over = static_cast<int>(messages.list().size()) - holding;
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", ("Messages: " + std::to_string(holding) +
-                               (over > 0 ? ", and " + std::to_string(over) + " that are over" : std::string()))
-                                  .c_str());
-    if (over > 0) {
-      ImGui::SameLine();
-      if (ImGui::SmallButton("Clear those")) messages.ClearOver();
-      NoteBox(session, state, "messages clear");
-    }
-    for (const Message& message : messages.list()) DrawMessage(message);
-    if (messages.list().size() > state.messagesSeen) ImGui::SetScrollHereY(1);
-    state.messagesSeen = messages.list().size();
+    ImGui::TextDisabled("Messages: %d", static_cast<int>(shown.size()));
+    ImGui::SameLine();
+    ActionButton(session, state, "console");
+    for (const Message* message : shown) DrawMessage(*message);
+    if (shown.size() > state.messagesSeen) ImGui::SetScrollHereY(1);
+    state.messagesSeen = shown.size();
     NoteWindow(session, state, "messages");
   }
   ImGui::End();

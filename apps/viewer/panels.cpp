@@ -3,8 +3,9 @@
 #include <imgui.h>
 
 #include <string>
-#include <vector>
+#include <utility>
 
+#include "apps/viewer/palette.h"
 #include "apps/viewer/session.h"
 #include "apps/viewer/ui_state.h"
 #include "apps/viewer/widgets.h"
@@ -25,6 +26,8 @@ constexpr Panel kPanels[] = {
     {"Damping", true, DrawDampingPanel},
     {"Gravity", true, DrawGravityPanel},
     {"Appearance", true, DrawAppearancePanel},
+    {"Scenes", false, DrawScenesPanel},
+    {"Presets", false, DrawPresetsPanel},
     {"Collisions", false, DrawCollisionsPanel},
     {"Spheres and planes", false, DrawCollidersPanel, HasColliders},
     {"Wind", false, DrawWindPanel},
@@ -50,13 +53,33 @@ void DrawClothChoice(Session& session, UiState& state) {
   ImGui::TextUnformatted("Settings of");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
-  NoteNextBox(session, state, "cloth choice");
-  if (!ImGui::BeginCombo("##cloth", name(state.cloth).c_str())) return;
+  if (!BeginList(session, state, "cloth choice", "Whose settings the panels show and set.", name(state.cloth))) return;
   for (int cloth = Session::kAll; cloth < count; ++cloth) {
     if (ImGui::Selectable(name(cloth).c_str(), cloth == state.cloth)) state.cloth = cloth;
     NoteBox(session, state, "cloth choice/" + (cloth < 0 ? std::string("all") : std::to_string(cloth)));
   }
   ImGui::EndCombo();
+}
+
+/// Its header, and below it the panel when it is open.
+void DrawPanel(const Panel& panel, Session& session, UiState& state) {
+  const std::string name = std::string("panel ") + panel.title;
+  bool& isOpen = state.kept.panelsOpen.try_emplace(panel.title, panel.openAtStart).first->second;
+  if (state.jump == name) state.jumpHere = state.jumpFound = true;
+  ImGui::SetNextItemOpen(isOpen || state.jumpSearching);
+  const bool open = ImGui::CollapsingHeader(panel.title);
+  if (open != isOpen && !state.jumpSearching) {
+    isOpen = open;
+    session.log().Write(LogLine("panel").Text("name", panel.title).Flag("open", open));
+  }
+  Control(session, state, name, open ? "Closes this panel." : "Opens this panel.");
+  if (!open) return;
+  const bool found = state.jumpFound;
+  ImGui::PushID(panel.title);
+  panel.draw(session, state);
+  ImGui::PopID();
+  ImGui::Dummy({0, 2 * state.scale});
+  if (state.jumpFound && !found) isOpen = true;
 }
 
 }  // namespace
@@ -73,24 +96,25 @@ void DrawPanelColumn(Session& session, UiState& state, float width, float height
   const float columnWidth = PanelColumnWidth(state);
   ImGui::SetNextWindowPos({width - columnWidth, 0});
   ImGui::SetNextWindowSize({columnWidth, height});
-  constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
-                                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                                      ImGuiWindowFlags_NoNav;
-  if (ImGui::Begin("Panels", nullptr, kFlags)) {
+  ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                           ImGuiWindowFlags_NoBringToFrontOnFocus;
+  if (state.keyboardIn != KeyboardIn::Panels) flags |= ImGuiWindowFlags_NoNav;
+  // A parameter that is jumped to is looked for in all panels, and found in the next picture.
+  state.jumpSearching = !state.jump.empty() && !state.jumpFound;
+  if (ImGui::Begin(kPanelsTitle, nullptr, flags)) {
     NoteWindow(session, state, "panels");
     DrawClothChoice(session, state);
     for (const Panel& panel : kPanels) {
-      if (panel.hasContent && !panel.hasContent(session)) continue;
-      const bool open = ImGui::CollapsingHeader(panel.title, panel.openAtStart ? ImGuiTreeNodeFlags_DefaultOpen : 0);
-      NoteBox(session, state, std::string("panel ") + panel.title);
-      if (!open) continue;
-      ImGui::PushID(panel.title);
-      panel.draw(session, state);
-      ImGui::PopID();
-      ImGui::Dummy({0, 2 * state.scale});
+      if (!panel.hasContent || panel.hasContent(session)) DrawPanel(panel, session, state);
     }
   }
   ImGui::End();
+  if (!state.jumpSearching) {
+    state.jumpFound = false;
+  } else if (!state.jumpFound) {  // No panel shows it: it is set where it was named.
+    OpenPalette(session, state, std::exchange(state.jump, {}) + " ");
+  }
+  state.jumpSearching = false;
 }
 
 }  // namespace percale::viewer

@@ -3,6 +3,7 @@
 /// The panels, each in a file of its own, and the column that holds them.
 
 #include <span>
+#include <string_view>
 
 #include "apps/viewer/frame_table.h"
 
@@ -11,6 +12,10 @@ namespace percale::viewer {
 class Session;
 struct Gizmo;
 struct UiState;
+
+/// Names of the windows that can have the keyboard.
+constexpr const char* kPanelsTitle = "Panels";
+constexpr const char* kConsoleTitle = "Console";
 
 struct Panel {
   const char* title;
@@ -32,6 +37,8 @@ void DrawCollisionsPanel(Session& session, UiState& state);
 void DrawCollidersPanel(Session& session, UiState& state);
 void DrawWindPanel(Session& session, UiState& state);
 void DrawOverlaysPanel(Session& session, UiState& state);
+void DrawScenesPanel(Session& session, UiState& state);
+void DrawPresetsPanel(Session& session, UiState& state);
 void DrawStatisticsPanel(Session& session, UiState& state);
 
 /// Width of the column at the right that holds the panels [screen unit].
@@ -40,8 +47,15 @@ float PanelColumnWidth(const UiState& state);
 void DrawPanelColumn(Session& session, UiState& state, float width, float height);
 /// What is wrong, at the lower edge of the picture; nothing when nothing is.
 void DrawMessages(Session& session, UiState& state, float pictureWidth, float height);
-/// One line in the upper left corner of the picture: paused or running, and which key helps.
-void DrawStatusLine(const Session& session, const UiState& state);
+/// In the upper left corner of the picture: paused or running, and which key helps.
+/// Below it, until the user has found them, the keys to begin with.
+void DrawStatusLine(Session& session, UiState& state, float pictureWidth);
+/// The user has found the key of that action.
+void NoteUsed(std::string_view action, UiState& state);
+/// All messages of the session, over the lower part of the picture.
+void DrawConsole(Session& session, UiState& state, float pictureWidth, float height);
+/// The command palette, in the upper part of the window.
+void DrawPalette(Session& session, UiState& state, float width, float height);
 /// The arrows at a sphere or plane that can be moved, that of `axis` brighter.
 void DrawGizmo(const Gizmo& gizmo, int axis, const UiState& state);
 /// What the colours of a heat map mean, below the status line; nothing without one.
@@ -54,7 +68,7 @@ void DrawPlotsWindow(Session& session, UiState& state, float pictureWidth, float
 std::span<const FrameRow> ShownFrames(Session& session, const UiState& state);
 /// Holds the plots at the frames that they show, or lets them go on.
 void HoldPlots(Session& session, UiState& state, bool hold);
-/// Keys and mouse, in the middle of the picture.
-void DrawHelp(const Session& session, UiState& state, float pictureWidth, float height);
+/// Keys and mouse, in the middle of the window.
+void DrawHelp(const Session& session, UiState& state, float width, float height);
 
 }  // namespace percale::viewer

@@ -73,13 +73,9 @@ bool SameView(const OrbitCamera& a, const OrbitCamera& b) {
          a.elevation() == b.elevation();
 }
 
-std::string_view SeverityName(Severity severity) {
-  return severity == Severity::Error ? "error" : severity == Severity::Warning ? "warning" : "note";
-}
-
 /// Messages that concern the whole session are for the terminal as well.
 bool GoesToTerminal(const std::string& source) {
-  return source.rfind("settings", 0) != 0 && source.rfind("input ", 0) != 0;
+  return source.rfind("settings", 0) != 0 && source.rfind("input ", 0) != 0 && source != "preset";
 }
 
 }  // namespace
@@ -358,6 +354,19 @@ bool Session::SetParameter(const Parameter& parameter, int index, const Value& v
   return true;
 }
 
+Status Session::SetScene(const std::string& label, Scene settings) {
+  const Diagnostics checked = CheckScene(settings);
+  if (HasErrors(checked)) return checked;
+  Change change{.label = label, .before = scene_, .after = settings};
+  change.settings = true;
+  undo_.Push(std::move(change));
+  scene_ = std::move(settings);
+  AdoptLook();
+  SendSettings(LogLine("settings"));
+  CheckSettings();
+  return Ok();
+}
+
 void Session::Refuse(const Parameter& parameter, int index, const std::string& why) {
   messages_.Set(InputSource(parameter, index), {Refusal(parameter.label, why)});
 }
@@ -516,6 +525,7 @@ bool Session::Load(const std::filesystem::path& file, const std::string& source,
   statesShader = origins.count("/look/shader") > 0;
   Diagnostics problems;
   if (file == options_.sceneFile) {
+    for (const Preset& preset : options_.presets) ApplyBelow(preset, origins, *loaded);
     for (const std::string& assignment : options_.set) {
       const auto applied = ApplyAssignment(*loaded, assignment);
       if (applied) continue;
@@ -613,7 +623,7 @@ bool Session::OpenScene(const std::filesystem::path& file) {
   return true;
 }
 
-void Session::CycleScene(int by) {
+std::vector<std::filesystem::path> Session::SceneFiles() const {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   const std::filesystem::path folder = browsed_.parent_path().empty() ? "." : browsed_.parent_path();
@@ -621,7 +631,13 @@ void Session::CycleScene(int by) {
     if (entry->path().extension() == ".json") files.push_back(browsed_.parent_path() / entry->path().filename());
   }
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+void Session::CycleScene(int by) {
+  const std::vector<std::filesystem::path> files = SceneFiles();
   if (files.empty()) {
+    const std::filesystem::path folder = browsed_.parent_path().empty() ? "." : browsed_.parent_path();
     messages_.Set("open", {MakeError(PathText(folder), "there is no scene file (*.json) in this folder")});
     return;
   }

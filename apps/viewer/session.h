@@ -81,6 +81,8 @@ class Session {
   /// Sets a parameter of object `index` of its group, or of kAll, if the value will do; else a
   /// message says why not, and the old value stays. Returns whether it was set.
   bool SetParameter(const Parameter& parameter, int index, const Value& value);
+  /// All settings at once, as one change that `label` names, if they will do; else the result says why not.
+  Status SetScene(const std::string& label, Scene settings);
   /// What was typed for a parameter will not do, and why.
   void Refuse(const Parameter& parameter, int index, const std::string& why);
 
@@ -106,6 +108,8 @@ class Session {
   void Reload();
   /// Another scene, paused at its start. When it cannot be read the old one stays.
   bool OpenScene(const std::filesystem::path& file);
+  /// The scene files of the folder that the current one is in, by name.
+  std::vector<std::filesystem::path> SceneFiles() const;
   /// The scene file that follows the current one in its folder, or with `by` < 0 the one before.
   void CycleScene(int by);
   const std::filesystem::path& sceneFile() const { return sceneFile_; }

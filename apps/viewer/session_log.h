@@ -7,7 +7,8 @@
 ///   start    log (the version of this format), version (of the program), scene (its file), config (the
 ///            text of the scene itself), shader, root, width, height (window), samples, renderer, software,
 ///            history (its budget [bytes]), frame, hash
-///   action   name, key: a key of the table in actions.cpp was pressed
+///   key      name, title, keys: a row of the table of actions; all of them after the start
+///   action   name, key: an action of that table was run, by its key, the palette or a button
 ///   ignored  name: the action had no effect, as a single frame while running
 ///   run      running, command: paused or resumed
 ///   loop     command: the history is shown again and again
@@ -47,7 +48,17 @@
 ///   inspect  cloth, vertex: the inspector describes another vertex
 ///   window   width, height [screen units], scale
 ///   panels   visible
+///   panel    name, open
 ///   help     visible
+///   console  visible
+///   copied   text: of the console, to the clipboard
+///   palette  visible, and while it is: query, selected ("action pause", "set cloth.ks", "shader Phong",
+///            "scene FILE", "preset silk", "panel Wind"), count of what the query means
+///   focus    name: the control that has the keyboard; empty: none
+///   hint     text: keys to begin with; empty: the user has found them all
+///   tooltip  control, text: the explanation of a control is shown
+///   preset   name: a preset is being applied
+///   preset_saved file
 ///   widget   name, x, y, width, height [screen units of the window]: where a control is drawn;
 ///            again when it has moved, and with width 0 when it has gone. Names are those of --set:
 ///            "cloth.ks" and "cloth.1.ks" are sliders, "cloth.ks box" the box to type in beside it,

@@ -46,7 +46,7 @@ void DrawStatisticsPanel(Session& session, UiState& state) {
   FactRow(state, "Drawing", Text("%.1f ms", state.drawSeconds * 1000));
   if (snapshot.framesPerSecond > 0) FactRow(state, "Speed", Text("%.0f frames/s", snapshot.framesPerSecond));
   const bool open = ImGui::TreeNode("##stages", "A frame of simulation: %.2f ms", state.frameSeconds * 1000);
-  NoteBox(session, state, "statistics stages");
+  Control(session, state, "statistics stages", "Where the time of a frame goes, stage by stage.");
   if (!open) return;
   for (int stage = 0; stage < kStageCount; ++stage) {
     const std::string name(StageName(static_cast<Stage>(stage)));

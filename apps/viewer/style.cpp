@@ -23,13 +23,16 @@ constexpr const char* kFonts[] = {
     "C:\\Windows\\Fonts\\segoeui.ttf",                                  //
 };
 
+const ImVec4 kOrange{0.90f, 0.62f, 0.00f, 1}, kSkyBlue{0.34f, 0.71f, 0.91f, 1}, kYellow{0.94f, 0.89f, 0.26f, 1},
+    kBlue{0.00f, 0.45f, 0.70f, 1}, kVermillion{1.00f, 0.49f, 0.20f, 1};  // The last one lighter, to be read on dark.
+
 ImVec4 Grey(float value, float alpha = 1) {
   return {value, value, value, alpha};
 }
 
 void SetColors(ImGuiStyle& style) {
   ImGui::StyleColorsDark(&style);
-  const ImVec4 accent(0.26f, 0.56f, 0.86f, 1), accentBright(0.36f, 0.66f, 0.96f, 1), accentDim(0.22f, 0.44f, 0.66f, 1);
+  const ImVec4 accent = kBlue, accentBright = kSkyBlue, accentDim(0.0f, 0.36f, 0.57f, 1);
   ImVec4* colors = style.Colors;
   colors[ImGuiCol_Text] = Grey(0.94f);
   colors[ImGuiCol_TextDisabled] = Grey(0.64f);
@@ -50,9 +53,18 @@ void SetColors(ImGuiStyle& style) {
   colors[ImGuiCol_HeaderHovered] = accentDim;
   colors[ImGuiCol_HeaderActive] = accent;
   colors[ImGuiCol_TextSelectedBg] = accentDim;
+  colors[ImGuiCol_NavHighlight] = kOrange;
 }
 
 }  // namespace
+
+ImVec4 AccentColor() {
+  return kSkyBlue;
+}
+
+ImVec4 SeverityColor(Severity severity) {
+  return severity == Severity::Error ? kVermillion : severity == Severity::Warning ? kYellow : Grey(0.94f);
+}
 
 void ApplyStyle(float scale, float fontScale, float pixelsPerUnit) {
   ImGuiStyle style;  // Anew: sizes are scaled from their defaults.

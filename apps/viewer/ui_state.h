@@ -5,13 +5,16 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/viewer/frame_table.h"
+#include "apps/viewer/palette.h"
 #include "apps/viewer/session.h"
+#include "apps/viewer/ui_settings.h"
 #include "mesh/engine_types.h"
 #include "percale/world.h"
 #include "render/heat_scale.h"
@@ -24,8 +27,12 @@ struct Box {
   friend bool operator==(const Box&, const Box&) = default;
 };
 
+/// Who gets the arrow keys, Enter, Space and Tab.
+enum class KeyboardIn { Picture, Panels, Console };
+constexpr int kKeyboardMoves = 2;  // Pictures.
+
 struct UiState {
-  bool panelsVisible = true;
+  UiSettings kept;  ///< From one start to the next.
   bool helpVisible = false;
   bool quit = false;
   int cloth = Session::kAll;  ///< Whose settings the panels show and set.
@@ -55,11 +62,27 @@ struct UiState {
   VertexRef inspected, inspectedLogged;
   float inspectorSize[2] = {};  ///< As it was last drawn [screen unit].
 
+  Palette palette;
+  std::vector<std::filesystem::path> presetFolders;  ///< Where they are saved, then others.
+  std::string presetName;                            ///< Typed for the next one to be saved.
+  std::string consoleFilter;
+  std::array<bool, 3> consoleShows{true, true, true};  ///< By Severity.
+  /// To be shown and given the keyboard: a parameter ("cloth.ks"), or "panel Gravity"; empty: none.
+  std::string jump;
+  bool jumpSearching = false;  ///< All panels are open in this picture, to see which one has it.
+  bool jumpFound = false;      ///< One of them has.
+  bool jumpHere = false;       ///< The next control is it.
+  KeyboardIn keyboardIn = KeyboardIn::Picture;
+  int keyboardMoves = 0;       ///< Pictures until it goes there; the window there has to know before.
+  std::string focusedControl;  ///< That has the keyboard, by its name in the log.
+
+  std::string hintLogged, tooltipLogged;  ///< The hint, and whose tooltip, the log has.
+
   /// What the pointer rests on, for its tooltip: the control's place, and since when [s].
   float hoveredAt[2] = {-1, -1};
   double hoveredSince = 0;
 
-  std::size_t messagesSeen = 0;  ///< How long the list was when it was last drawn.
+  std::size_t messagesSeen = 0, consoleSeen = 0;  ///< How long the lists were when they were last drawn.
 
   /// Where the controls of the last picture are, by name, for the session log; unused without one.
   std::map<std::string, Box> boxes;

@@ -7,9 +7,11 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,7 @@
 #include "apps/viewer/panels.h"
 #include "apps/viewer/session.h"
 #include "apps/viewer/session_log.h"
+#include "apps/viewer/ui_settings.h"
 #include "apps/viewer/ui_state.h"
 #include "apps/viewer/window.h"
 #include "io/atomic_file.h"
@@ -39,6 +42,9 @@ constexpr int kActivePictures = 3;
 constexpr double kSleep = 0.05;
 /// Share of a new value in the smoothed times.
 constexpr double kSmoothing = 0.1;
+/// A window that was kept is opened no smaller and no larger [pixel].
+constexpr int kLeastWidth = 320, kLeastHeight = 200, kMostSize = 8192;
+constexpr const char* kSettingsSource = "kept settings";
 
 volatile std::sig_atomic_t interrupted = 0;
 extern "C" void OnInterrupt(int) {
@@ -53,7 +59,12 @@ double Now() {
 class Viewer {
  public:
   Viewer(const ViewerOptions& options, Window& window, GlDevice& device, SessionLog log)
-      : window_(window), device_(device), session_(options, device, std::move(log), &Window::Wake) {}
+      : window_(window),
+        device_(device),
+        session_(options, device, std::move(log), &Window::Wake),
+        settingsFile_(options.settings) {
+    state_.presetFolders = options.presetFolders;
+  }
 
   void LogStart(const ViewerOptions& options) {
     if (!session_.logged()) return;
@@ -75,6 +86,16 @@ class Viewer {
                              .Number("history", static_cast<double>(options.historyBudget))
                              .Number("frame", session_.snapshot().report.frame)
                              .Hash("hash", session_.snapshot().hash));
+    for (const Action& action : Actions()) {
+      session_.log().Write(
+          LogLine("key").Text("name", action.name).Text("title", action.title).Text("keys", KeysText(action)));
+    }
+  }
+
+  /// What was kept from the last time.
+  void TakeSettings(UiSettings settings, const Diagnostics& problems) {
+    state_.kept = std::move(settings);
+    session_.messages().Set(kSettingsSource, problems);
   }
 
   int Run() {
@@ -101,6 +122,7 @@ class Viewer {
       DrawPicture();
       --picturesDue;
     }
+    KeepSettings();
     // A large cloth may need a while to finish its frame: the window need not stay for that.
     window_.Hide();
     const int code = interrupted ? kExitInterrupted : 0;
@@ -109,6 +131,30 @@ class Viewer {
   }
 
  private:
+  /// For the next start.
+  void KeepSettings() {
+    if (settingsFile_.empty()) return;
+    WindowPlace place;
+    window_.Place(place.x, place.y, place.width, place.height);
+    if (!window_.Minimized()) state_.kept.window = place;
+    const Status saved = SaveUiSettings(settingsFile_, state_.kept);
+    if (saved) return;
+    Diagnostics problems = saved.diagnostics();
+    for (Diagnostic& problem : problems) {
+      problem.severity = Severity::Warning;
+      problem.message += "; what the viewer was to keep for the next start is lost";
+    }
+    session_.messages().Set(kSettingsSource, problems);
+  }
+
+  void RememberScene() {
+    if (session_.sceneFile() == rememberedScene_) return;
+    rememberedScene_ = session_.sceneFile();
+    std::error_code ignored;
+    const std::filesystem::path whole = std::filesystem::absolute(rememberedScene_, ignored).lexically_normal();
+    Remember(state_.kept.recentScenes, PathText(whole));
+  }
+
   void HandleKeys(const std::vector<InputEvent>& events) {
     for (const InputEvent& event : events) {
       if (event.kind == InputEvent::Kind::Drop) session_.OpenScene(event.file);
@@ -117,17 +163,47 @@ class Viewer {
   }
 
   void HandleKey(const InputEvent& event) {
-    const bool typing = ImGui::GetIO().WantTextInput;
+    if (TakePaletteKey(event.key, session_, state_)) return;
+    // ImGui goes on to want text for a picture after the box has had its Enter.
+    const bool typing = ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
     if ((typing || Window::HasLists()) && BelongsToTextInput(event.key)) {
       if (!typing && event.key.special == SpecialKey::Escape) Window::CloseLists();
+      return;
+    }
+    if (state_.keyboardIn != KeyboardIn::Picture && BelongsToControls(event.key)) {
+      // Unless it has just ended what was going on in a control.
+      if (event.key.special == SpecialKey::Escape && !controlBusy_) LeavePanels();
       return;
     }
     RunAction(event.key, event.repeated, session_, state_);
   }
 
+  void LeavePanels() {
+    state_.keyboardIn = KeyboardIn::Picture;
+    state_.keyboardMoves = kKeyboardMoves;
+  }
+
+  /// Gives the keyboard to whom it is to go.
+  void MoveKeyboard() {
+    const bool visible =
+        state_.keyboardIn == KeyboardIn::Panels ? state_.kept.panelsVisible : state_.kept.consoleVisible;
+    const bool leaves = ImGui::IsMouseClicked(0) && !ImGui::GetIO().WantCaptureMouse;
+    if (state_.keyboardIn != KeyboardIn::Picture && (!visible || leaves)) LeavePanels();
+    if (state_.keyboardMoves > 0 && --state_.keyboardMoves == 0) {
+      constexpr const char* kNames[] = {nullptr, kPanelsTitle, kConsoleTitle};
+      Window::FocusPanels(kNames[static_cast<std::size_t>(state_.keyboardIn)]);
+    }
+  }
+
+  void LogFocus() {
+    if (state_.focusedControl == loggedFocus_) return;
+    loggedFocus_ = state_.focusedControl;
+    session_.log().Write(LogLine("focus").Text("name", loggedFocus_));
+  }
+
   /// The part of the window that shows the picture: all but the panels [screen unit].
   int PictureWidth() const {
-    if (!state_.panelsVisible) return width_;
+    if (!state_.kept.panelsVisible) return width_;
     return std::max(width_ - static_cast<int>(PanelColumnWidth(state_)), 1);
   }
 
@@ -146,13 +222,16 @@ class Viewer {
                                .Number("scale", static_cast<double>(state_.scale)));
     }
     SmoothTimes();
+    RememberScene();
 
-    window_.BeginPanels();
+    controlBusy_ = ImGui::IsAnyItemActive() || Window::HasLists();
+    window_.BeginPanels(state_.keyboardIn != KeyboardIn::Picture);
     const std::vector<InputEvent> events = window_.TakeEvents();
     // Whose a press is depends on where it was made, not on where the pointer is by now.
     for (const InputEvent& event : events) {
       hand_.Take(event, !Window::OverPanels(event.x, event.y), {PictureWidth(), height_}, session_);
     }
+    MoveKeyboard();
     HandleKeys(events);
     const ImVec2 pointer = ImGui::GetIO().MousePos;
     state_.pointerRay =
@@ -160,7 +239,10 @@ class Viewer {
     state_.boxes.clear();
     session_.HoldChanges(hand_.dragging() || ImGui::IsMouseDown(ImGuiMouseButton_Left));
     DrawGizmo();
+    state_.focusedControl.clear();
+    if (!state_.jump.empty()) state_.kept.panelsVisible = true;
     DrawPanels();
+    LogFocus();
     // What the keys and panels have just changed shows at once.
     session_.Update(Now());
     DrawScene();
@@ -176,14 +258,16 @@ class Viewer {
 
   void DrawPanels() {
     const float width = static_cast<float>(width_), height = static_cast<float>(height_);
-    if (state_.panelsVisible) {
-      DrawStatusLine(session_, state_);
+    if (state_.kept.panelsVisible) {
+      DrawStatusLine(session_, state_, static_cast<float>(PictureWidth()));
       DrawPanelColumn(session_, state_, width, height);
       DrawMessages(session_, state_, static_cast<float>(PictureWidth()), height);
     }
     DrawPlotsWindow(session_, state_, static_cast<float>(PictureWidth()), height);
     DrawInspector(session_, state_, PictureWidth(), height_);
-    DrawHelp(session_, state_, static_cast<float>(PictureWidth()), height);
+    DrawConsole(session_, state_, static_cast<float>(PictureWidth()), height);
+    DrawHelp(session_, state_, width, height);
+    DrawPalette(session_, state_, width, height);
   }
 
   void DrawGizmo() {
@@ -261,7 +345,26 @@ class Viewer {
   int width_ = 0, height_ = 0;                          // Of the window [screen unit].
   std::int64_t smoothedStep_ = 0;
   bool typing_ = false;
+  bool controlBusy_ = false;  // A control was in use, or a list open, in the last picture.
+  std::string loggedFocus_;
+  std::filesystem::path settingsFile_, rememberedScene_;
 };
+
+/// Where the window was last time, unless the options say otherwise.
+WindowSettings MakeWindowSettings(const ViewerOptions& options, const UiSettings& kept) {
+  WindowSettings settings;
+  if (kept.window) {
+    settings.width = std::clamp(kept.window->width, kLeastWidth, kMostSize);
+    settings.height = std::clamp(kept.window->height, kLeastHeight, kMostSize);
+    settings.position = {kept.window->x, kept.window->y};
+  }
+  if (options.width > 0) settings.width = options.width;
+  if (options.height > 0) settings.height = options.height;
+  settings.uiScale = options.uiScale;
+  settings.samples = options.samples;
+  settings.title = "Percale";
+  return settings;
+}
 
 int Fail(const Diagnostics& diagnostics, int code) {
   for (const Diagnostic& diagnostic : diagnostics) {
@@ -303,13 +406,17 @@ int RunViewer(const ViewerOptions& options) {
     if (!opened) return Fail(opened.diagnostics(), kExitFailed);
     log = std::move(*opened);
   }
-  Result<Window> window = Window::Open({options.width, options.height, options.samples, "Percale"});
+  Diagnostics problems;
+  UiSettings kept;
+  if (!options.settings.empty()) kept = LoadUiSettings(options.settings, problems);
+  Result<Window> window = Window::Open(MakeWindowSettings(options, kept));
   if (!window) return Fail(window.diagnostics(), kExitNoGraphics);
   Result<GlDevice> device = GlDevice::Create(options.root);
   if (!device) return Fail(device.diagnostics(), kExitNoGraphics);
   const InterruptHandler handler;
   Viewer viewer(options, *window, *device, std::move(log));
   viewer.LogStart(options);
+  viewer.TakeSettings(std::move(kept), problems);
   return viewer.Run();
 }
 

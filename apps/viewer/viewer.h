@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/preset_file.h"
 #include "percale/scene.h"
 #include "render/scene_view.h"
 
@@ -15,14 +16,18 @@ namespace percale {
 struct ViewerOptions {
   Scene scene;                       ///< As loaded, with `set` applied; must pass CheckScene.
   std::filesystem::path sceneFile;   ///< Where it is from: watched, and read again when it changes and by F5.
+  std::vector<Preset> presets;       ///< For what `sceneFile` does not state, each time it is read.
   std::vector<std::string> set;      ///< "PATH=VALUE", applied again each time `sceneFile` is read.
   std::filesystem::path root = ".";  ///< The project's folder, with shaders/ and textures/.
   View view;                         ///< What the window opens with.
-  int width = 1024, height = 800;    ///< Of the window, on a display of ordinary density [pixel].
+  int width = 0, height = 0;         ///< Of the window, on a display of ordinary density [pixel]; 0: as last time.
+  double uiScale = 0;                ///< Of text and controls; 0: as the display asks for.
   int samples = 0;                   ///< Per pixel; 0: 4, or 1 where the CPU draws.
   int threads = 0;                   ///< Of the simulation; 0: as many as there are cores.
   std::size_t historyBudget = std::size_t{256} << 20;  ///< Memory for past frames [bytes]; 0: none are kept.
-  std::filesystem::path log;                           ///< Session log (apps/viewer/session_log.h); empty: none.
+  std::filesystem::path settings;                    ///< File of what is kept from one start to the next; empty: none.
+  std::vector<std::filesystem::path> presetFolders;  ///< The user's own, where presets are saved, then others.
+  std::filesystem::path log;                         ///< Session log (apps/viewer/session_log.h); empty: none.
 };
 
 /// Shows the scene in a window, paused, until the user closes it. Messages go to stderr. Returns an

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "apps/viewer/actions.h"
+#include "apps/viewer/window.h"
 #include "core/text.h"
 #include "percale/parameters.h"
 
@@ -34,20 +37,6 @@ const Shown* ShownOf(const Parameter& parameter) {
   return nullptr;
 }
 
-/// Units as people write them: "kg/(m^2 s)" becomes "kg/(m² s)".
-std::string Readable(std::string_view unit) {
-  std::string text;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (unit.substr(i, 2) == "^2" || unit.substr(i, 2) == "^3") {
-      text += unit[i + 1] == '2' ? "\u00b2" : "\u00b3";
-      ++i;
-    } else {
-      text += unit[i];
-    }
-  }
-  return text;
-}
-
 double RoundToDigits(double value, int digits) {
   if (value == 0 || !std::isfinite(value)) return value;
   char text[40];
@@ -70,8 +59,8 @@ void RowText(const UiState& state, std::string_view label) {
 
 /// Shown when the pointer has rested on the last item for a moment, so that it does not hide what
 /// the user is about to do.
-void Tooltip(UiState& state, const std::string& text) {
-  if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;
+void Tooltip(Session& session, UiState& state, std::string_view control, const std::string& text) {
+  if (state.palette.open || !ImGui::IsItemHovered() || ImGui::IsItemActive()) return;
   const ImVec2 at = ImGui::GetItemRectMin();
   if (at.x != state.hoveredAt[0] || at.y != state.hoveredAt[1]) {
     state.hoveredAt[0] = at.x;
@@ -83,7 +72,11 @@ void Tooltip(UiState& state, const std::string& text) {
   ImGui::PushTextWrapPos(kTooltipWidth * state.scale);
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
   ImGui::PopTextWrapPos();
+  NoteWindow(session, state, "tooltip");
   ImGui::EndTooltip();
+  if (!session.logged() || state.tooltipLogged == control) return;
+  state.tooltipLogged = control;
+  session.log().Write(LogLine("tooltip").Text("control", control).Text("text", text));
 }
 
 /// What a numeric control is about.
@@ -103,13 +96,13 @@ struct NumberEdit {
 };
 
 /// Label, slider, box, unit. `value` is shown, and changed by nobody but the caller.
-NumberEdit NumberRow(const Session& session, UiState& state, const NumberSpec& spec, double value) {
+NumberEdit NumberRow(Session& session, UiState& state, const NumberSpec& spec, double value) {
   NumberEdit edit;
   const float scale = state.scale;
   ImGui::PushID(spec.id.c_str());
   const float left = ImGui::GetCursorPosX();
   RowText(state, spec.label);
-  Tooltip(state, spec.help);
+  Tooltip(session, state, spec.id, spec.help);
 
   if (spec.max > spec.min) {
     ImGui::SameLine(left + kSliderAt * scale);
@@ -123,8 +116,7 @@ NumberEdit NumberRow(const Session& session, UiState& state, const NumberSpec& s
       if (!spec.logarithmic && std::abs(slid) < 1e-3 * (spec.max - spec.min)) slid = 0;
       if (slid != value) edit.value = slid;
     }
-    Tooltip(state, spec.help);
-    NoteBox(session, state, spec.id);
+    Control(session, state, spec.id, spec.help);
   }
 
   ImGui::SameLine(left + (kSliderAt + kSliderWidth + kGap) * scale);
@@ -147,8 +139,7 @@ NumberEdit NumberRow(const Session& session, UiState& state, const NumberSpec& s
         edit.text = text;
     }
   }
-  Tooltip(state, spec.help);
-  NoteBox(session, state, spec.id + " box");
+  Control(session, state, spec.id + " box", spec.help);
   if (!spec.unit.empty()) {
     ImGui::SameLine(0, kGap * scale);
     ImGui::TextDisabled("%s", spec.unit.c_str());
@@ -158,20 +149,21 @@ NumberEdit NumberRow(const Session& session, UiState& state, const NumberSpec& s
 }
 
 /// Label of a row whose control is not a number; leaves the cursor at the control.
-void RowLabel(UiState& state, std::string_view label, const std::string& help) {
+void RowLabel(Session& session, UiState& state, std::string_view label, const std::string& help) {
   const float left = ImGui::GetCursorPosX();
   RowText(state, label);
-  Tooltip(state, help);
+  Tooltip(session, state, label, help);
   ImGui::SameLine(left + kSliderAt * state.scale);
   ImGui::SetNextItemWidth((kSliderWidth + kGap + kBoxWidth) * state.scale);
 }
 
-/// The chosen one of `names`, or nothing when the user has not chosen.
-std::optional<int> DropDown(const Session& session, UiState& state, const std::string& id, int current,
-                            const std::vector<std::string>& names, const std::string& preview) {
+/// A row with a list to choose from: the chosen one of `names`, or nothing when the user has not chosen.
+std::optional<int> DropDown(Session& session, UiState& state, const std::string& id, std::string_view label,
+                            const std::string& help, int current, const std::vector<std::string>& names,
+                            const std::string& preview) {
+  RowLabel(session, state, label, help);
   std::optional<int> chosen;
-  NoteNextBox(session, state, id);
-  if (!ImGui::BeginCombo(("##" + id).c_str(), preview.c_str(), ImGuiComboFlags_HeightLarge)) return chosen;
+  if (!BeginList(session, state, id, help, preview)) return chosen;
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
     const std::string& name = names[static_cast<std::size_t>(i)];
     if (ImGui::Selectable(name.c_str(), i == current)) chosen = i;
@@ -212,7 +204,11 @@ std::string HelpText(const Target& target) {
   std::string text(p.help);
   if (target.mixed) text += "\nThe cloths differ here; the first one's value is shown.";
   const std::string path = std::string(p.group) + "." + std::string(p.name);
-  text += "\n\n" + path + ": " + DescribeExpected(p) + "; by default " + FormatValue(DefaultValue(p)) + ".";
+  text += "\n\n" + path + ": " + DescribeExpected(p);
+  if (p.typicalMax > p.typicalMin) {
+    text += "; typically " + FormatNumber(p.typicalMin) + " to " + FormatNumber(p.typicalMax);
+  }
+  text += "; by default " + FormatValue(DefaultValue(p)) + ".";
   if (const Shown* shown = ShownOf(p)) {
     text += "\nShown in " + std::string(shown->unit) + ", which is " + FormatNumber(shown->divisor) + " " +
             std::string(p.unit) + ".";
@@ -284,7 +280,8 @@ void Vector(Session& session, UiState& state, const Target& target) {
 
 void ColorPicker(Session& session, UiState& state, const Target& target) {
   const Vec3 value = std::get<Vec3>(target.parameter.get(session.scene(), target.first));
-  RowLabel(state, LabelText(target), HelpText(target));
+  const std::string help = HelpText(target);
+  RowLabel(session, state, LabelText(target), help);
   float rgb[3] = {static_cast<float>(value.x), static_cast<float>(value.y), static_cast<float>(value.z)};
   if (ImGui::ColorEdit3(("##" + target.id).c_str(), rgb)) {
     Vec3 changed;
@@ -292,7 +289,7 @@ void ColorPicker(Session& session, UiState& state, const Target& target) {
     for (int i = 0; i < 3; ++i) *to[i] = RoundToDigits(std::clamp(static_cast<double>(rgb[i]), 0.0, 1.0), 4);
     session.SetParameter(target.parameter, target.index, changed);
   }
-  NoteBox(session, state, target.id);
+  Control(session, state, target.id, help);
 }
 
 void Choice(Session& session, UiState& state, const Target& target) {
@@ -304,9 +301,9 @@ void Choice(Session& session, UiState& state, const Target& target) {
     current = static_cast<int>(std::find(names.begin(), names.end(), *text) - names.begin());
   else
     current = static_cast<int>(std::get<double>(value));
-  RowLabel(state, LabelText(target), HelpText(target));
   const std::string preview = current < static_cast<int>(names.size()) ? names[static_cast<std::size_t>(current)] : "";
-  const std::optional<int> chosen = DropDown(session, state, target.id, current, names, preview);
+  const std::optional<int> chosen =
+      DropDown(session, state, target.id, LabelText(target), HelpText(target), current, names, preview);
   if (!chosen) return;
   if (p.kind == ValueKind::Choice)
     session.SetParameter(p, target.index, names[static_cast<std::size_t>(*chosen)]);
@@ -319,23 +316,74 @@ void Tick(Session& session, UiState& state, const Target& target, const std::str
   if (ImGui::Checkbox((label + "##" + target.id).c_str(), &on)) {
     session.SetParameter(target.parameter, target.index, on);
   }
-  Tooltip(state, HelpText(target));
-  NoteBox(session, state, target.id);
+  Control(session, state, target.id, HelpText(target));
+}
+
+/// What is to be shown of a parameter comes with the next control.
+void MarkJump(UiState& state, std::string_view group, std::string_view name) {
+  state.jumpHere = !state.jump.empty() && state.jump == std::string(group) + "." + std::string(name);
+  state.jumpFound |= state.jumpHere;
 }
 
 }  // namespace
+
+std::string Readable(std::string_view unit) {
+  std::string text;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (unit.substr(i, 2) == "^2" || unit.substr(i, 2) == "^3") {
+      text += unit[i + 1] == '2' ? "\u00b2" : "\u00b3";
+      ++i;
+    } else {
+      text += unit[i];
+    }
+  }
+  return text;
+}
+
+void Control(Session& session, UiState& state, std::string_view name, const std::string& help) {
+  NoteBox(session, state, name);
+  if (std::exchange(state.jumpHere, false) && !state.jumpSearching) GiveKeyboard(state);
+  Tooltip(session, state, name, help);
+}
+
+bool BeginList(Session& session, UiState& state, const std::string& name, const std::string& help,
+               const std::string& preview) {
+  const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::CalcItemWidth(), ImGui::GetFrameHeight());
+  const bool visible = ImGui::IsRectVisible(size);
+  if (ImGui::BeginCombo(("##" + name).c_str(), preview.c_str(), ImGuiComboFlags_HeightLarge)) {
+    // The last item is one of the list now.
+    if (session.logged() && visible) state.boxes[name] = {at.x, at.y, size.x, size.y};
+    return true;
+  }
+  Control(session, state, name, help);
+  return false;
+}
+
+void GiveKeyboard(UiState& state) {
+  Window::FocusLastItem();
+  ImGui::SetScrollHereY(0.3f);
+  state.keyboardIn = KeyboardIn::Panels;
+  state.jump.clear();
+}
+
+bool ActionButton(Session& session, UiState& state, std::string_view name) {
+  const Action& action = FindAction(name);
+  const bool can = !action.enabled || action.enabled(session, state);
+  ImGui::BeginDisabled(!can);
+  const bool pressed = ImGui::Button(std::string(action.title).c_str());
+  ImGui::EndDisabled();
+  const std::string keys = KeysText(action);
+  Control(session, state, "button " + std::string(name),
+          std::string(action.help) + (keys.empty() ? "" : "\n\nKey: " + keys));
+  if (pressed) RunAction(action, session, state);
+  return pressed;
+}
 
 void NoteBox(const Session& session, UiState& state, std::string_view name) {
   if (!session.logged() || !ImGui::IsItemVisible()) return;
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
   state.boxes[std::string(name)] = {min.x, min.y, max.x - min.x, max.y - min.y};
-}
-
-void NoteNextBox(const Session& session, UiState& state, std::string_view name) {
-  const ImVec2 size(ImGui::CalcItemWidth(), ImGui::GetFrameHeight());
-  if (!session.logged() || !ImGui::IsRectVisible(size)) return;
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  state.boxes[std::string(name)] = {at.x, at.y, size.x, size.y};
+  if (state.keyboardIn != KeyboardIn::Picture && ImGui::IsItemFocused()) state.focusedControl = name;
 }
 
 void NoteWindow(const Session& session, UiState& state, std::string_view name) {
@@ -346,6 +394,7 @@ void NoteWindow(const Session& session, UiState& state, std::string_view name) {
 
 void ParameterRow(Session& session, UiState& state, std::string_view group, std::string_view name, int index) {
   const Target target = MakeTarget(session, group, name, index);
+  MarkJump(state, group, name);
   switch (target.parameter.kind) {
     case ValueKind::Number:
       return Number(session, state, target);
@@ -353,7 +402,7 @@ void ParameterRow(Session& session, UiState& state, std::string_view group, std:
       if (!target.parameter.choices.empty()) return Choice(session, state, target);
       return Number(session, state, target);
     case ValueKind::Boolean:
-      RowLabel(state, LabelText(target), HelpText(target));
+      RowLabel(session, state, LabelText(target), HelpText(target));
       return Tick(session, state, target, "");
     case ValueKind::Choice:
       return Choice(session, state, target);
@@ -364,30 +413,36 @@ void ParameterRow(Session& session, UiState& state, std::string_view group, std:
     case ValueKind::GridPoints:
       break;
   }
-  RowLabel(state, LabelText(target), HelpText(target));
+  RowLabel(session, state, LabelText(target), HelpText(target));
   Wrapped(FormatValue(target.parameter.get(session.scene(), target.first)));
 }
 
 void ParameterTick(Session& session, UiState& state, std::string_view group, std::string_view name, int index) {
   const Target target = MakeTarget(session, group, name, index);
+  MarkJump(state, group, name);
   Tick(session, state, target, LabelText(target));
 }
 
 void ShaderRow(Session& session, UiState& state) {
   const Target target = MakeTarget(session, "look", "shader", Session::kAll);
-  RowLabel(state, LabelText(target), HelpText(target));
   const std::vector<std::string>& names = session.shaderNames();
   const std::string current = session.view().look.shader;
   const int at = static_cast<int>(std::find(names.begin(), names.end(), current) - names.begin());
-  if (const auto chosen = DropDown(session, state, target.id, at, names, current))
+  const std::string help = HelpText(target) + "\n\nKeys: " + KeysText(FindAction("previous_shader")) + " " +
+                           KeysText(FindAction("next_shader"));
+  if (const auto chosen = DropDown(session, state, target.id, LabelText(target), help, at, names, current))
     session.SetShader(names[static_cast<std::size_t>(*chosen)]);
 }
 
 void UniformRow(Session& session, UiState& state, const ShaderParameter& parameter) {
   UniformValue value = session.Uniform(parameter);
   const std::string id = "uniform." + parameter.name;
-  const std::string help = (parameter.help.empty() ? "" : parameter.help + "\n\n") + parameter.name +
-                           " of the shader " + session.view().look.shader;
+  std::string help = (parameter.help.empty() ? "" : parameter.help + "\n\n") + parameter.name + " of the shader " +
+                     session.view().look.shader;
+  if (parameter.type != ShaderParameter::Type::Bool && parameter.max > parameter.min && parameter.choices.empty()) {
+    help += ": " + FormatNumber(static_cast<double>(parameter.min)) + " to " +
+            FormatNumber(static_cast<double>(parameter.max));
+  }
   const auto number = [&](const std::string& suffix, const std::string& label, float& component) {
     const NumberSpec spec{id + suffix,
                           label,
@@ -406,23 +461,22 @@ void UniformRow(Session& session, UiState& state, const ShaderParameter& paramet
   };
   switch (parameter.type) {
     case ShaderParameter::Type::Bool: {
-      RowLabel(state, parameter.label, help);
+      RowLabel(session, state, parameter.label, help);
       bool on = value[0] != 0;
       if (ImGui::Checkbox(("##" + id).c_str(), &on)) {
         value[0] = on ? 1.0f : 0.0f;
         session.SetUniform(parameter, value);
       }
-      NoteBox(session, state, id);
+      Control(session, state, id, help);
       break;
     }
     case ShaderParameter::Type::Int:
       if (parameter.choices.empty()) {
         number("", parameter.label, value[0]);
       } else {
-        RowLabel(state, parameter.label, help);
         const int last = static_cast<int>(parameter.choices.size()) - 1;
         const int current = std::clamp(static_cast<int>(value[0]), 0, last);
-        const auto chosen = DropDown(session, state, id, current, parameter.choices,
+        const auto chosen = DropDown(session, state, id, parameter.label, help, current, parameter.choices,
                                      parameter.choices[static_cast<std::size_t>(current)]);
         if (!chosen) break;
         value[0] = static_cast<float>(*chosen);
@@ -434,12 +488,12 @@ void UniformRow(Session& session, UiState& state, const ShaderParameter& paramet
       break;
     case ShaderParameter::Type::Vector:
       if (parameter.color) {
-        RowLabel(state, parameter.label, help);
+        RowLabel(session, state, parameter.label, help);
         if (ImGui::ColorEdit3(("##" + id).c_str(), value.data())) {
           for (float& component : value) component = std::clamp(component, 0.0f, 1.0f);
           session.SetUniform(parameter, value);
         }
-        NoteBox(session, state, id);
+        Control(session, state, id, help);
       } else {
         number(".x", parameter.label + " x", value[0]);
         number(".y", parameter.label + " y", value[1]);

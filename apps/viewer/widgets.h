@@ -30,14 +30,28 @@ void UniformRow(Session& session, UiState& state, const ShaderParameter& paramet
 /// A line of a table of facts: label, value.
 void FactRow(const UiState& state, const char* label, const std::string& value);
 
+/// Units as people write them: "kg/(m^2 s)" becomes "kg/(m² s)".
+std::string Readable(std::string_view unit);
+
 /// Text as wide as the window, broken into lines.
 void Wrapped(std::string_view text);
 
-/// Notes where the last item is, for the log.
+/// Every control is followed by this: it explains the control to whose pointer rests on it, and notes
+/// it under that name.
+void Control(Session& session, UiState& state, std::string_view name, const std::string& help);
+
+/// A control that opens a list: whether it is open, and ImGui::EndCombo is to be called after its entries.
+bool BeginList(Session& session, UiState& state, const std::string& name, const std::string& help,
+               const std::string& preview);
+
+/// A button for an action of the table, with its help and key. Returns whether it was pressed.
+bool ActionButton(Session& session, UiState& state, std::string_view name);
+
+/// Shows the last item, and lets keys act on it.
+void GiveKeyboard(UiState& state);
+
+/// Notes where the last item is, for the log, and whether it has the keyboard.
 void NoteBox(const Session& session, UiState& state, std::string_view name);
-/// The same for a control that comes next, one line high and as wide as set: a drop-down, after
-/// which the last item is in its list when that is open.
-void NoteNextBox(const Session& session, UiState& state, std::string_view name);
 /// The same for the window that is being made.
 void NoteWindow(const Session& session, UiState& state, std::string_view name);
 

@@ -8,6 +8,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "apps/viewer/style.h"
@@ -53,6 +54,19 @@ char CharacterWithControl(int key, int scancode) {
   return key > GLFW_KEY_SPACE && key < 0x7f ? static_cast<char>(key) : '\0';
 }
 
+/// Whether the corner of a window at that place can be seen and grasped on some screen.
+bool IsOnScreen(int x, int y) {
+  constexpr int kGrip = 60;
+  int count = 0;
+  GLFWmonitor** const monitors = glfwGetMonitors(&count);
+  for (int i = 0; i < count; ++i) {
+    int left = 0, top = 0, width = 0, height = 0;
+    glfwGetMonitorWorkarea(monitors[i], &left, &top, &width, &height);
+    if (x >= left && y >= top && x + kGrip <= left + width && y + kGrip <= top + height) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 /// What GLFW calls. ImGui's own callbacks are installed afterwards and call these first.
@@ -66,6 +80,7 @@ struct Window::Callbacks {
 
   static void Key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
     Of(window).lastRepeated = action == GLFW_REPEAT;
+    if (action == GLFW_PRESS && key >= 0) Of(window).pressed.push_back(key);
     if (action == GLFW_RELEASE || (modifiers & GLFW_MOD_ALT) != 0) return;
     InputEvent event;
     event.kind = InputEvent::Kind::Key;
@@ -175,6 +190,9 @@ Result<Window> Window::Open(const WindowSettings& settings) {
     glfwMakeContextCurrent(*made);
   }
   GLFWwindow* const window = self.window_ = *made;
+  if (settings.position && IsOnScreen(settings.position->first, settings.position->second))
+    glfwSetWindowPos(window, settings.position->first, settings.position->second);
+  self.uiScale_ = static_cast<float>(settings.uiScale);
   self.input_ = std::make_unique<Input>();
   glfwSetWindowUserPointer(window, self.input_.get());
   glfwSetKeyCallback(window, Callbacks::Key);
@@ -209,6 +227,8 @@ Window& Window::operator=(Window&& other) noexcept {
   std::swap(samples_, other.samples_);
   std::swap(scale_, other.scale_);
   std::swap(contentScale_, other.contentScale_);
+  std::swap(uiScale_, other.uiScale_);
+  std::swap(enterOwner_, other.enterOwner_);
   std::swap(title_, other.title_);
   return *this;
 }
@@ -263,16 +283,59 @@ void Window::AdaptToScale() {
   glfwGetFramebufferSize(window_, &pixels, &height);
   const float pixelsPerUnit = width > 0 && pixels > 0 ? static_cast<float>(pixels) / static_cast<float>(width) : 1;
   contentScale_ = contentScale;
-  scale_ = contentScale / pixelsPerUnit;
-  ApplyStyle(scale_, contentScale, pixelsPerUnit);
+  const float wanted = uiScale_ > 0 ? uiScale_ * pixelsPerUnit : contentScale;  // [pixel]
+  scale_ = wanted / pixelsPerUnit;
+  ApplyStyle(scale_, wanted, pixelsPerUnit);
   ImGui_ImplOpenGL3_DestroyDeviceObjects();  // Made again, from the new fonts, with the next picture.
 }
 
-void Window::BeginPanels() {
+void Window::BeginPanels(bool keyboard) {
   AdaptToScale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  FeedKeys(keyboard);
   ImGui::NewFrame();
+#if IMGUI_VERSION_NUM < 18700
+  for (const int key : input_->pressed) ImGui::GetIO().KeysDown[key] = glfwGetKey(window_, key) == GLFW_PRESS;
+#endif
+  input_->pressed.clear();
+}
+
+/// Which keys Dear ImGui sees in the picture to come.
+void Window::FeedKeys(bool keyboard) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (keyboard)
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  else
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    // It is always to be seen where the keyboard is.
+#if IMGUI_VERSION_NUM < 19140
+  if (keyboard) GImGui->NavDisableHighlight = false;
+#else
+  if (keyboard) GImGui->NavCursorVisible = true;
+#endif
+#if IMGUI_VERSION_NUM < 18700  // Later versions queue what happens between two pictures, and let Enter press buttons.
+  // A key that was let go before the picture came is down for one picture all the same.
+  for (const int key : input_->pressed) io.KeysDown[key] = true;
+  if (io.KeyCtrl) io.KeysDown[GLFW_KEY_TAB] = false;  // It is a key of ours, not for ImGui's list of windows.
+  bool& enter = io.KeysDown[GLFW_KEY_ENTER];
+  bool& keypadEnter = io.KeysDown[GLFW_KEY_KP_ENTER];
+  if (!enter && !keypadEnter)
+    enterOwner_ = Owner::None;
+  else if (enterOwner_ == Owner::None)
+    enterOwner_ = keyboard && !io.WantTextInput ? Owner::Panels : Owner::Text;
+  if (enterOwner_ == Owner::Panels) {  // It does what Space does.
+    enter = keypadEnter = false;
+    io.NavInputs[ImGuiNavInput_Activate] = 1;
+  }
+#endif
+}
+
+void Window::FocusPanels(const char* name) {
+  ImGuiWindow* const window = name ? ImGui::FindWindowByName(name) : nullptr;
+  ImGui::FocusWindow(window);
+  if (!window) return;
+  ImGui::NavInitWindow(window, false);
 }
 
 void Window::EndPanels() {
@@ -298,6 +361,11 @@ void Window::CloseLists() {
   if (HasLists()) ImGui::ClosePopupToLevel(0, true);
 }
 
+void Window::FocusLastItem() {
+  ImGui::FocusWindow(ImGui::GetCurrentContext()->CurrentWindow);
+  ImGui::SetFocusID(ImGui::GetItemID(), GImGui->CurrentWindow);
+}
+
 void Window::Present() {
   glfwSwapBuffers(window_);
 }
@@ -317,6 +385,16 @@ void Window::SetTitle(const std::string& title) {
 
 void Window::Size(int& width, int& height) const {
   glfwGetWindowSize(window_, &width, &height);
+}
+void Window::Place(int& x, int& y, int& width, int& height) const {
+  glfwGetWindowPos(window_, &x, &y);
+  glfwGetWindowSize(window_, &width, &height);
+  int pixels = 1, unused = 1;
+  glfwGetFramebufferSize(window_, &pixels, &unused);
+  // What GLFW has made larger for the display's density, it will make larger again.
+  const float factor = contentScale_ * static_cast<float>(width) / static_cast<float>(std::max(pixels, 1));
+  width = static_cast<int>(std::lround(static_cast<float>(width) / factor));
+  height = static_cast<int>(std::lround(static_cast<float>(height) / factor));
 }
 void Window::FramebufferSize(int& width, int& height) const {
   glfwGetFramebufferSize(window_, &width, &height);

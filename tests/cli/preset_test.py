@@ -7,10 +7,6 @@ from program import ProgramTest
 
 
 class Presets(ProgramTest):
-    def setUp(self):
-        super().setUp()
-        self.environment["PERCALE_CONFIG_DIR"] = str(self.folder / "config")
-
     def config(self, *arguments):
         """path -> (value, origin)"""
         done = self.run_program("simulate", self.scene(), "--print-config", *arguments)

@@ -29,7 +29,9 @@ class ProgramTest(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="percale test é "))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        # A user's own presets are not to change what is tested.
         self.environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        self.environment["PERCALE_CONFIG_DIR"] = str(self.folder / "config")
 
     def run_program(self, *arguments, code=0, environment=None, stdout=subprocess.PIPE):
         """Runs percale and checks its exit code; returns what it printed."""

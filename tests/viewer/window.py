@@ -73,7 +73,9 @@ class Viewer:
     def __init__(self, display, *arguments, environment=None):
         self.folder = tempfile.mkdtemp(prefix="percale-viewer-")
         self.log = os.path.join(self.folder, "session.log")
-        self.environment = {**os.environ, "DISPLAY": display.name, **(environment or {})}
+        # What the viewer keeps for the next start is no business of the user who runs the tests.
+        self.environment = {**os.environ, "DISPLAY": display.name,
+                            "PERCALE_CONFIG_DIR": os.path.join(self.folder, "config"), **(environment or {})}
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.errors = open(os.path.join(self.folder, "stderr"), "w+", encoding="utf-8", errors="replace")
         root = [] if "-r" in arguments else ["-r", ROOT]
@@ -83,12 +85,13 @@ class Viewer:
         self.events = []
         self.read = 0
         self.rest = ""
+        self.first = "panel Simulation"  # a control of the first picture
 
     def __enter__(self):
         try:
             self.start = self.wait("start")
             # The first picture: from then on the window takes input.
-            self.wait("widget", name="panel Simulation")
+            self.wait("widget", name=self.first)
             self.window = wait_for("the window", lambda: self.xdotool(
                 "search", "--onlyvisible", "--pid", str(self.process.pid), "--name", "Percale", check=False).split())[0]
         except BaseException:
@@ -184,6 +187,14 @@ class Viewer:
         self.xdotool("key", "--clearmodifiers", key)
         self.wait("action", since, name=action)
         return since
+
+    def choose(self, query, command):
+        """Opens the palette, types, and waits until that command is the selected one."""
+        since = self.mark()
+        self.xdotool("key", "ctrl+k")
+        self.wait("palette", since, visible=True)
+        self.xdotool("type", "--delay", "15", "--", query)
+        return self.wait("palette", since, query=query, selected=command)
 
     def step(self):
         """One frame; returns the state after it."""
