@@ -34,19 +34,21 @@ bool ToggleOverlay(Session& session, bool Overlays::*shown) {
 
 void LogInspector(Session& session, const UiState& state) {
   session.log().Write(LogLine("inspector").Flag("visible", state.inspectorVisible).Flag("held", state.inspectorHeld));
-  /// From the picture to the panels, to the console, to the picture, past what cannot be seen.
-  void MoveKeyboard(UiState & state) {
-    KeyboardIn& in = state.keyboardIn;
-    if (in == KeyboardIn::Picture && state.kept.panelsVisible)
-      in = KeyboardIn::Panels;
-    else if (in != KeyboardIn::Console && state.kept.consoleVisible)
-      in = KeyboardIn::Console;
-    else
-      in = KeyboardIn::Picture;
-    state.keyboardMoves = kKeyboardMoves;
-  }
+}
 
-  // clang-format off
+/// From the picture to the panels, to the console, to the picture, past what cannot be seen.
+void MoveKeyboard(UiState& state) {
+  KeyboardIn& in = state.keyboardIn;
+  if (in == KeyboardIn::Picture && state.kept.panelsVisible)
+    in = KeyboardIn::Panels;
+  else if (in != KeyboardIn::Console && state.kept.consoleVisible)
+    in = KeyboardIn::Console;
+  else
+    in = KeyboardIn::Picture;
+  state.keyboardMoves = kKeyboardMoves;
+}
+
+// clang-format off
 constexpr Action kActions[] = {
     {.name = "pause", .category = "Simulation", .title = "Run or pause", .help = "Run or pause the simulation",
      .key = Typed('p'),
@@ -208,32 +210,32 @@ constexpr Action kActions[] = {
      .key = Press(Escape),
      .run = [](Session&, UiState& state) { state.quit = true; return true; }},
 };
-  // clang-format on
+// clang-format on
 
-  constexpr MouseHelp kMouse[] = {
-      {"Left drag", "Turn the view"},
-      {"Right drag, Ctrl + left drag", "Shift the view"},
-      {"Wheel", "Nearer and farther"},
-      {"Shift + left drag", "Drag cloth, pin, sphere or plane"},
-      {"Shift + click", "Pin the cloth, or let it go"},
-      {"Drag an arrow", "Move a sphere or plane along an axis"},
-      {"Drop a scene file", "Open it"},
-  };
+constexpr MouseHelp kMouse[] = {
+    {"Left drag", "Turn the view"},
+    {"Right drag, Ctrl + left drag", "Shift the view"},
+    {"Wheel", "Nearer and farther"},
+    {"Shift + left drag", "Drag cloth, pin, sphere or plane"},
+    {"Shift + click", "Pin the cloth, or let it go"},
+    {"Drag an arrow", "Move a sphere or plane along an axis"},
+    {"Drop a scene file", "Open it"},
+};
 
-  std::string_view SpecialName(SpecialKey special) {
-    constexpr std::string_view kNames[] = {"",      "Esc", "Tab",  "Enter", "Delete", "Home", "End", "Left",
-                                           "Right", "Up",  "Down", "F1",    "F2",     "F3",   "F4",  "F5",
-                                           "F6",    "F7",  "F8",   "F9",    "F10",    "F11",  "F12"};
-    static_assert(std::size(kNames) == static_cast<std::size_t>(F12) + 1);
-    return kNames[static_cast<std::size_t>(special)];
-  }
+std::string_view SpecialName(SpecialKey special) {
+  constexpr std::string_view kNames[] = {"",      "Esc", "Tab",  "Enter", "Delete", "Home", "End", "Left",
+                                         "Right", "Up",  "Down", "F1",    "F2",     "F3",   "F4",  "F5",
+                                         "F6",    "F7",  "F8",   "F9",    "F10",    "F11",  "F12"};
+  static_assert(std::size(kNames) == static_cast<std::size_t>(F12) + 1);
+  return kNames[static_cast<std::size_t>(special)];
+}
 
-  char Upper(char c) {
-    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  }
-  char Lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  }
+char Upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+char Lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 }  // namespace
 

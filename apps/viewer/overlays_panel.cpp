@@ -18,8 +18,9 @@ void HeatMapChoice(Session& session, UiState& state, HeatMapSettings& settings) 
   ImGui::TextUnformatted("Heat map");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
-  NoteNextBox(session, state, "heat map");
-  if (!ImGui::BeginCombo("##heat", Describe(settings.quantity).label.data())) return;
+  if (!BeginList(session, state, "heat map", "Colours the cloths by a quantity\n\nKey: T, one after the other",
+                 std::string(Describe(settings.quantity).label)))
+    return;
   for (int q = 0; q < kQuantities; ++q) {
     const auto quantity = static_cast<Quantity>(q);
     if (ImGui::Selectable(Describe(quantity).label.data(), quantity == settings.quantity)) settings.quantity = quantity;
@@ -37,7 +38,8 @@ void RangeRow(Session& session, UiState& state, HeatMapSettings& settings) {
     else
       settings.range.reset();
   }
-  NoteBox(session, state, "heat map fixed");
+  Control(session, state, "heat map fixed",
+          "The first and the last colour keep their values; else they follow the cloth");
   ValueRange range = settings.range.value_or(state.heatScale.range);
   const auto box = [&](const char* id, const char* name, double& value) {
     ImGui::SameLine();
@@ -45,7 +47,7 @@ void RangeRow(Session& session, UiState& state, HeatMapSettings& settings) {
     // What is typed counts when it is complete.
     ImGui::InputDouble(id, &value, 0, 0, "%.5g", ImGuiInputTextFlags_AutoSelectAll);
     const bool typed = ImGui::IsItemDeactivatedAfterEdit();
-    NoteBox(session, state, name);
+    Control(session, state, name, "The value of the first or the last colour");
     return typed;
   };
   const bool low = box("##low", "heat map low box", state.typedRange.low);
@@ -68,14 +70,13 @@ void DrawOverlaysPanel(Session& session, UiState& state) {
 
   bool wireframe = session.view().wireframe;
   if (ImGui::Checkbox("Wireframe", &wireframe)) session.ToggleWireframe();
-  NoteBox(session, state, "overlay wireframe");
+  Control(session, state, "overlay wireframe", "Springs over any shader\n\nKey: W");
   Overlays overlays = session.view().overlays;
   for (const OverlayInfo& overlay : AllOverlays()) {
     // Three to a line.
     if (overlay.shown != &Overlays::contacts) ImGui::SameLine();
     ImGui::Checkbox(overlay.label.data(), &(overlays.*overlay.shown));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", overlay.help.data());
-    NoteBox(session, state, "overlay " + std::string(overlay.name));
+    Control(session, state, "overlay " + std::string(overlay.name), std::string(overlay.help));
   }
   if (overlays != session.view().overlays) session.SetOverlays(overlays);
 }
