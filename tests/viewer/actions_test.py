@@ -23,6 +23,13 @@ CHECKS = {
     "previous_shader": ("shader", {}),
     "next_shader": ("shader", {}),
     "wireframe": ("wireframe", {}),
+    "heat_map": ("heat_map", {}),
+    "normals": ("overlays", {}),
+    "pins": ("overlays", {}),
+    "contacts": ("overlays", {}),
+    "boxes": ("overlays", {}),
+    "inspector": ("inspector", {}),
+    "hold_vertex": ("inspector", {"held": True}),
     "previous_scene": ("open", {}),
     "next_scene": ("open", {}),
     "reload": ("reload", {"what": "scene"}),
@@ -31,6 +38,8 @@ CHECKS = {
     "focus": ("focus", {}),
     "console": ("console", {}),
     "panels": ("panels", {}),
+    "plots": ("plots", {}),
+    "export_plots": ("export", {}),
     "help": ("help", {}),
     "quit": ("exit", {"code": 0}),
 }
@@ -52,8 +61,7 @@ class Actions(ViewerTest):
         return [event for event in viewer.events if event["event"] == "key"]
 
     def open(self):
-        # From a scene whose folder has others, and with the console closed.
-        return self.viewer(scene("pinned2"), "--shader", "Phong")
+        return self.viewer(scene("selfCollision"), "--shader", "Phong")
 
     def acted(self, viewer, since, name):
         viewer.wait("action", since, name=name)
@@ -70,6 +78,16 @@ class Actions(ViewerTest):
         if name == "step_back":  # There is a past to go back to.
             viewer.step()
             viewer.step()
+        if name == "redo":
+            viewer.key("ctrl+z", "undo")
+            viewer.settle()
+        if name == "export_plots":  # There is something to be plotted.
+            viewer.step()
+        if name == "hold_vertex":  # One of the sheet as it stands at its start.
+            viewer.key("r", "reset")
+            viewer.settle()
+            viewer.point(320, 400)
+            viewer.wait("inspect")
 
     def test_each_has_a_check(self):
         with self.open() as viewer:

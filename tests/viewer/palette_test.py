@@ -66,9 +66,9 @@ class Palette(ViewerTest):
             viewer.wait("focus", since, name="panel Wind")
             since = self.run_choice(viewer, "preset silk", "preset silk")
             viewer.wait("preset", since, name="silk")
-            self.assertIn('"ks": 1500,', json.dumps(viewer.wait("settings", since)["config"]))
+            self.assertIn('"ks": 1500,', viewer.wait("settings", since)["config"])
             since = viewer.key("ctrl+z", "undo")  # All of it at once.
-            self.assertIn('"ks": 5000,', json.dumps(viewer.wait("settings", since)["config"]))
+            self.assertIn('"ks": 5000,', viewer.wait("settings", since)["config"])
             since = self.run_choice(viewer, "pinned4", "scene " + scene("pinned4"))
             self.assertEqual(os.path.basename(viewer.wait("open", since)["scene"]), "pinned4.json")
 
@@ -76,6 +76,8 @@ class Palette(ViewerTest):
         with self.viewer(scene("sphere")) as viewer:
             for file in glob.glob(os.path.join(ROOT, "shaders", "*.frag")):
                 name = os.path.basename(file)[:-5]
+                if "." in name:  # a part of a shader
+                    continue
                 viewer.choose("shader: " + name, "shader " + name)
                 viewer.xdotool("key", "Escape")
             for file in glob.glob(os.path.join(ROOT, "presets", "*.json")):
@@ -157,7 +159,7 @@ class Presets(ViewerTest):
             since = viewer.mark()
             viewer.click("preset")
             viewer.click("preset/mine")
-            self.assertIn('"ks": 4321,', json.dumps(viewer.wait("settings", since)["config"]))
+            self.assertIn('"ks": 4321,', viewer.wait("settings", since)["config"])
             # Without a name it gets one that is free.
             since = viewer.mark()
             viewer.click("button save_preset")
