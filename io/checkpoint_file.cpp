@@ -219,7 +219,7 @@ Result<std::string> ReadAll(const std::filesystem::path& file) {
 
 }  // namespace
 
-Status SaveCheckpoint(const std::filesystem::path& file, const WorldState& state) {
+std::string FormatCheckpoint(const WorldState& state) {
   Writer body;
   body.Text(FormatScene(*state.scene));
   ExchangeState(body, state);
@@ -227,20 +227,23 @@ Status SaveCheckpoint(const std::filesystem::path& file, const WorldState& state
   head.Number(kVersion);
   head.Number(std::uint64_t{body.bytes().size()});
   tail.Number(Checksum(body.bytes()));
+  return std::string(kMark) + head.bytes() + body.bytes() + tail.bytes();
+}
+
+Status SaveCheckpoint(const std::filesystem::path& file, const WorldState& state) {
   Result<AtomicFile> output = AtomicFile::Create(file);
   if (!output) return output.diagnostics();
-  for (const std::string_view part :
-       {kMark, std::string_view(head.bytes()), std::string_view(body.bytes()), std::string_view(tail.bytes())}) {
-    if (Status written = output->Write(part); !written) return written;
-  }
+  if (Status written = output->Write(FormatCheckpoint(state)); !written) return written;
   return output->Commit();
 }
 
 Result<WorldState> LoadCheckpoint(const std::filesystem::path& file) {
-  const std::string name = PathText(file);
   const Result<std::string> bytes = ReadAll(file);
   if (!bytes) return bytes.diagnostics();
-  const std::string_view all = *bytes;
+  return ParseCheckpoint(*bytes, PathText(file));
+}
+
+Result<WorldState> ParseCheckpoint(std::string_view all, const std::string& name) {
   if (all.substr(0, kMark.size()) != kMark) {
     return MakeError(name, all.empty() ? "expected a checkpoint of Percale, got an empty file"
                                        : "expected a checkpoint of Percale, got something else");

@@ -55,6 +55,9 @@ class GlDevice {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The lower left part of the framebuffer that is bound, opaque [pixel].
+Image ReadFramebuffer(int width, int height);
+
 /// A multisampled picture on the card, to draw into and read back. Its context must be current.
 class RenderTarget {
  public:

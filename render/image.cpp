@@ -14,6 +14,8 @@
 namespace percale {
 namespace {
 
+constexpr std::size_t kMaxReadText = 256u << 20;    // [bytes] of memory, once unpacked.
+constexpr std::size_t kLongText = 16u << 10;        // Is compressed.
 constexpr std::size_t kMaxReadPixels = 128u << 20;  // 512 MB of memory: a small file can claim any size.
 
 struct CloseFile {
@@ -95,6 +97,7 @@ bool ReadHeader(Reader& reader) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_set_read_fn(reader.png, &reader, ReadBytes);
   png_set_user_limits(reader.png, 0x7fffffff, 0x7fffffff);  // We say ourselves what is too large.
+  png_set_chunk_malloc_max(reader.png, kMaxReadText);
   png_read_info(reader.png, reader.info);
   reader.image.width = static_cast<int>(png_get_image_width(reader.png, reader.info));
   reader.image.height = static_cast<int>(png_get_image_height(reader.png, reader.info));
@@ -214,7 +217,11 @@ Status WritePng(const std::filesystem::path& file, const Image& image, const Png
     png_text text{};
     text.key = const_cast<char*>(entry.keyword.c_str());
     text.text = const_cast<char*>(entry.text.c_str());
-    text.compression = IsAscii(entry.text) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+    const bool isLong = entry.text.size() > kLongText;
+    if (IsAscii(entry.text))
+      text.compression = isLong ? PNG_TEXT_COMPRESSION_zTXt : PNG_TEXT_COMPRESSION_NONE;
+    else
+      text.compression = isLong ? PNG_ITXT_COMPRESSION_zTXt : PNG_ITXT_COMPRESSION_NONE;
     (IsAscii(entry.text) ? text.text_length : text.itxt_length) = entry.text.size();
     writer.text.push_back(text);
   }

@@ -30,7 +30,7 @@ Image MakeImage(int width, int height);
 /// A named text inside a PNG file.
 struct PngText {
   std::string keyword;  ///< 1..79 printable Latin-1 characters: "Title", "percale:scene".
-  std::string text;     ///< UTF-8, any length.
+  std::string text;     ///< UTF-8, any length; a long one is compressed.
   friend bool operator==(const PngText&, const PngText&) = default;
 };
 

@@ -8,6 +8,19 @@
 
 namespace percale {
 
+Image ReadFramebuffer(int width, int height) {
+  Image image{width, height, std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height) * 4)};
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+
+  // OpenGL's first row is the lowest.
+  const std::size_t rowSize = std::size_t(width) * 4;
+  for (int y = 0; y < height / 2; ++y)
+    std::swap_ranges(image.At(0, y), image.At(0, y) + rowSize, image.At(0, height - 1 - y));
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  return image;
+}
+
 struct RenderTarget::Impl {
   int width = 0, height = 0;
   bool isMultisampled = false;
@@ -85,16 +98,8 @@ Image RenderTarget::Read() const {
     glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, impl_->framebuffers[impl_->isMultisampled ? 1 : 0]);
-  Image image = MakeImage(width, height);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  Image image = ReadFramebuffer(width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-
-  // OpenGL's first row is the lowest.
-  const std::size_t rowSize = std::size_t(width) * 4;
-  for (int y = 0; y < height / 2; ++y)
-    std::swap_ranges(image.At(0, y), image.At(0, y) + rowSize, image.At(0, height - 1 - y));
-  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
   return image;
 }
 
