@@ -10,7 +10,7 @@ mkdir -p $out
 shot() { # NAME ARGUMENTS
   local name=$1
   shift
-  "$percale" shot "$@" --size 480x384 --samples 8 -o "$out/$name.png"
+  "$percale" shot "$@" --shader-defaults --size 480x384 --samples 8 -o "$out/$name.png"
 }
 shot pinned2 scene/pinned2.json --until-rest --shader Wireframe --camera 25,10,1.7 --target .5,.45,.3
 shot sphere scene/sphere.json --until-rest --shader Phong --set look.color=[.85,.35,.3] --camera 25,18,1.5 --target .5,.15,.5
@@ -25,7 +25,7 @@ read -r display <&3
 trap 'kill $(jobs -p) 2>/dev/null || true; pkill -f "Xvfb -displayfd 1 -screen 0 1280x1024x24" || true' EXIT
 export DISPLAY=:$display
 log=$(mktemp)
-"$percale" view scene/sphere.json --fresh --shader Bump --log "$log" &
+"$percale" view scene/sphere.json --fresh --shader-defaults --shader Bump --log "$log" &
 viewer=$!
 until grep -q '"widget"' "$log"; do sleep 0.2; done
 window=$(xdotool search --onlyvisible --pid $viewer | head -n 1)

@@ -189,6 +189,9 @@ class Builder {
         ->allow_extra_args(false)
         ->type_name("NAME=VALUE")
         ->group("Picture");
+    app.add_flag("--shader-defaults", options_.shaderDefaults,
+                 "Leaves alone the values that the viewer has kept beside shaders, in shaders/NAME.json")
+        ->group("Picture");
     Call(app, "--heat-map", "Colours the cloths by " + List(QuantityNames(), "or") + ", with a legend", "NAME",
          "Picture", [this](const std::string& text) {
            const std::size_t at = Find("--heat-map", "heat map", text, QuantityNames());

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <set>
 
+#include "apps/cli/run.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
 #include "core/text.h"
@@ -52,11 +53,32 @@ void PrintCloth(const ClothSettings& cloth, std::size_t index, double timeStep) 
   std::printf("  damping          %s %% per step\n", Short(cloth.damping).c_str());
 }
 
-void PrintScene(const Session& session) {
+/// Where a checkpoint or a picture stands.
+void PrintState(const Options& options, const Session& session) {
+  if (!session.state) {
+    std::printf("shows              frame %d from the start\n", session.frame);
+    return;
+  }
+  const WorldState& state = *session.state;
+  const StepReport& report = state.report;
+  std::printf("stands at          frame %d, %.4g s, step %lld\n", report.frame, report.time,
+              static_cast<long long>(report.step));
+  if (!state.handles.empty() || !state.balls.empty() || !state.gusts.empty()) {
+    std::printf("in it              %zu handles, %zu balls, %zu gusts\n", state.handles.size(), state.balls.size(),
+                state.gusts.size());
+  }
+  std::printf("greatest stretch   %.6f\n", report.greatestStretch);
+  std::printf("kinetic energy     %.6g J\n", report.kineticEnergy);
+  std::printf("state              %016llx\n", static_cast<unsigned long long>(MakeWorld(options, session).StateHash()));
+}
+
+void PrintScene(const Options& options, const Session& session) {
   const Scene& scene = session.scene;
   double points = 0;
   for (const ClothSettings& cloth : scene.cloths) points += double(cloth.numWidthPoints) * cloth.numHeightPoints;
-  std::printf("%s: scene\n", PathText(session.file).c_str());
+  const char* const kind = session.view ? "picture" : session.state ? "checkpoint" : "scene";
+  std::printf("%s: %s\n", PathText(session.file).c_str(), kind);
+  if (session.view || session.state) PrintState(options, session);
   std::printf("time step          1/%lld s (%d frames per second, %d steps each)\n",
               static_cast<long long>(scene.simulation.framesPerSecond) * scene.simulation.stepsPerFrame,
               scene.simulation.framesPerSecond, scene.simulation.stepsPerFrame);
@@ -103,7 +125,7 @@ int Info(const Options& options) {
       if (const int* failure = std::get_if<int>(&opened))
         code = *failure;
       else
-        PrintScene(std::get<Session>(opened));
+        PrintScene(one, std::get<Session>(opened));
     }
     if (code != kDone) worst = code;
   }

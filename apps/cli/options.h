@@ -64,6 +64,7 @@ struct Options {
   double framesPerSecond = 30;  ///< Of a video.
   std::string shader;           ///< Empty: the scene's.
   std::vector<UniformOption> uniforms;
+  bool shaderDefaults = false;                         ///< Leave alone what the viewer has kept beside the shaders.
   HeatMapSettings heatMap;                             ///< --heat-map, --heat-range
   Overlays overlays;                                   ///< --overlay
   std::optional<double> azimuth, elevation, distance;  ///< --camera [degree, degree, m]

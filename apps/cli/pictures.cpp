@@ -9,7 +9,9 @@
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "percale/scene_file.h"
+#include "render/shader_values.h"
 #include "render/video.h"
+#include "render/view_file.h"
 
 namespace percale::cli {
 namespace {
@@ -21,13 +23,17 @@ constexpr int kPngLevel = 6;
 
 }  // namespace
 
-View MakeView(const Options& options, const Scene& scene) {
-  View view = View::ForScene(SeenScene(options, scene));
-  view.sphereLatitudes = options.latitudes;
-  view.sphereLongitudes = options.longitudes;
-  view.heatMap = options.heatMap;
-  view.overlays = options.overlays;
-  view.wireframe = options.wireframe;
+View MakeView(const Options& options, const Scene& scene, const std::optional<percale::View>& picture) {
+  const View plain = View::ForScene(SeenScene(options, scene));
+  View view = picture.value_or(plain);
+  view.look = plain.look;
+  view.camera = plain.camera;
+  const Options unsaid;
+  if (!picture || options.latitudes != unsaid.latitudes) view.sphereLatitudes = options.latitudes;
+  if (!picture || options.longitudes != unsaid.longitudes) view.sphereLongitudes = options.longitudes;
+  if (!picture || options.heatMap.quantity != unsaid.heatMap.quantity) view.heatMap = options.heatMap;
+  for (const OverlayInfo& overlay : AllOverlays()) view.overlays.*overlay.shown |= options.overlays.*overlay.shown;
+  view.wireframe |= options.wireframe;
   return view;
 }
 
@@ -67,13 +73,21 @@ int ApplyUniforms(const Options& options, std::span<const ShaderParameter> param
   return kDone;
 }
 
+Diagnostics ApplyKeptUniforms(const Options& options, const Session& session, const fs::path& root,
+                              std::span<const ShaderParameter> parameters, percale::View& view) {
+  if (options.shaderDefaults || session.view) return {};
+  const auto kept = LoadShaderValues(ShaderValuesFile(root / "shaders", view.look.shader), parameters);
+  if (kept) view.uniforms = *kept;
+  return kept.diagnostics();
+}
+
 std::variant<Studio, int> OpenStudio(const Options& options, const Session& session) {
   const auto root = FindRoot(options.root);
   if (!root) {
     PrintDiagnostics(root.diagnostics());
     return kFailed;
   }
-  View view = MakeView(options, session.scene);
+  View view = MakeView(options, session.scene, session.view);
   const std::vector<std::string> shaders = ListShaders(*root / "shaders");
   if (std::find(shaders.begin(), shaders.end(), view.look.shader) == shaders.end()) {
     const std::vector<std::string_view> names(shaders.begin(), shaders.end());
@@ -93,6 +107,10 @@ std::variant<Studio, int> OpenStudio(const Options& options, const Session& sess
     return noGraphics ? kNoGraphics : kFailed;
   }
   PrintDiagnostics(painter.diagnostics());
+  const Diagnostics kept =
+      ApplyKeptUniforms(options, session, *root, painter->shaders().Parameters(view.look.shader), view);
+  PrintDiagnostics(kept);
+  if (HasErrors(kept)) return kInvalid;
   if (const int code = ApplyUniforms(options, painter->shaders().Parameters(view.look.shader), view); code != kDone)
     return code;
   // Errors are told with the first picture, which they prevent.
@@ -109,23 +127,23 @@ std::optional<Image> Paint(Studio& studio, const World& world) {
 }
 
 Status SavePicture(const fs::path& file, const Image& image, const Scene& scene, const View& view, int frame,
-                   std::vector<PngText> more) {
-  Scene seen = scene;
-  seen.camera = view.camera.Settings();
-  seen.look = view.look;
+                   std::vector<PngText> more, const WorldState* state) {
   PngOptions png;
   png.level = kPngLevel;
-  png.text = {{"Software", std::string("Percale ") + PERCALE_VERSION},
-              {"percale:scene", FormatScene(seen)},
-              {"percale:frame", std::to_string(frame)}};
+  png.text = DescribePicture(scene, view, frame, state);
+  png.text.insert(png.text.begin(), {"Software", std::string("Percale ") + PERCALE_VERSION});
   png.text.insert(png.text.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   return WritePng(file, image, png);
 }
 
-int WritePicture(Studio& studio, const World& world, const fs::path& file) {
+int WritePicture(Studio& studio, const World& world, const Session& session, const fs::path& file) {
   const auto image = Paint(studio, world);
   if (!image) return kInvalid;
-  const Status status = SavePicture(file, *image, world.scene(), studio.view, world.report().frame);
+  // From the start there is a way to the frame; from a state there is none without it.
+  WorldState state;
+  if (session.state) world.Save(state);
+  const Status status =
+      SavePicture(file, *image, world.scene(), studio.view, world.report().frame, {}, session.state ? &state : nullptr);
   PrintDiagnostics(status.diagnostics());
   return status ? kDone : kFailed;
 }
@@ -158,10 +176,10 @@ int Film(Studio& studio, World& world, const Options& options, const Session& se
   const double framesPerPicture = world.scene().simulation.framesPerSecond / options.framesPerSecond;
   double pictures = 0;
   int code = kDone;
-  const RunPlan plan = PlanRun(options, world.scene(), defaultFrames);
+  const RunPlan plan = PlanRun(options, world, defaultFrames);
   const RunEnd end = Run(world, plan, options, session, [&] {
-    const int frame = world.report().frame;
-    if (frame > 0 && frame == plan.frames && !plan.untilRest) return int(kDone);
+    const int frame = world.report().frame - plan.firstFrame;
+    if (frame > 0 && world.report().frame == plan.frames && !plan.untilRest) return int(kDone);
     std::optional<Image> image;
     while (std::floor(pictures * framesPerPicture + 1e-9) <= frame) {
       if (!image) image = Paint(studio, world);

@@ -16,12 +16,17 @@
 
 namespace percale::cli {
 
-/// The view of the scene with the command line's choices. Fails on a camera that cannot be.
-View MakeView(const Options& options, const Scene& scene);
+/// The view of the scene, or of the picture that was opened, with the command line's choices.
+View MakeView(const Options& options, const Scene& scene, const std::optional<percale::View>& picture = {});
 
 /// Enters the command line's --uniform into the view, if they fit the parameters of its shader. Returns
 /// the exit code.
 int ApplyUniforms(const Options& options, std::span<const ShaderParameter> parameters, View& view);
+
+/// Enters what the viewer has kept of the shader's parameters, unless a picture has brought its own. Returns
+/// what is wrong with the file.
+Diagnostics ApplyKeptUniforms(const Options& options, const Session& session, const std::filesystem::path& root,
+                              std::span<const ShaderParameter> parameters, percale::View& view);
 
 /// A painter and its view.
 struct Studio {
@@ -37,13 +42,12 @@ std::variant<Studio, int> OpenStudio(const Options& options, const Session& sess
 /// shader is at fault).
 std::optional<Image> Paint(Studio& studio, const World& world);
 
-/// Writes a PNG file that holds scene, camera and frame as texts, and `more` behind them.
+/// Writes a PNG file that tells what it shows (render/view_file.h), `more` behind that.
 Status SavePicture(const std::filesystem::path& file, const Image& image, const Scene& scene, const View& view,
-                   int frame, std::vector<PngText> more = {});
+                   int frame, std::vector<PngText> more = {}, const WorldState* state = nullptr);
 
-/// Paints the World and writes a PNG file that holds scene, camera and frame as texts. Returns the
-/// exit code.
-int WritePicture(Studio& studio, const World& world, const std::filesystem::path& file);
+/// Paints the World and writes such a file. Returns the exit code.
+int WritePicture(Studio& studio, const World& world, const Session& session, const std::filesystem::path& file);
 
 /// NAME.EXTENSION for a scene file NAME.json, in the current folder.
 std::filesystem::path DefaultOutput(const Session& session, const char* extension);

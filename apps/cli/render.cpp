@@ -1,5 +1,6 @@
 #include "apps/cli/pictures.h"
 #include "apps/cli/platform.h"
+#include "apps/cli/run.h"
 #include "apps/cli/verbs.h"
 #include "io/atomic_file.h"
 
@@ -23,7 +24,7 @@ int Render(const Options& options) {
   auto studio = OpenStudio(options, session);
   if (const int* code = std::get_if<int>(&studio)) return *code;
   CatchInterrupts();
-  World world(session.scene, {.threads = options.threads});
+  World world = MakeWorld(options, session);
   return Film(std::get<Studio>(studio), world, options, session, file, kDefaultFrames);
 }
 

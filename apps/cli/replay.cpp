@@ -5,6 +5,7 @@
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
 #include "io/atomic_file.h"
+#include "render/view_file.h"
 #ifdef PERCALE_HAS_VIEWER
 #include "apps/viewer/replay.h"
 #endif
@@ -20,7 +21,14 @@ int Replay(const Options& options) {
   }
   CatchInterrupts();
   const auto goOn = [](const World&) { return !Interrupted(); };
-  const auto replayed = viewer::Replay(TextPath(options.scene), {.threads = options.threads, .onFrame = goOn});
+  const auto load = [](const std::filesystem::path& file) -> Result<WorldState> {
+    Result<ViewFile> opened = OpenViewFile(file);
+    if (!opened) return opened.diagnostics();
+    if (!opened->state) return MakeError(PathText(file), "expected a checkpoint or a picture that holds a state");
+    return *opened->state;
+  };
+  const auto replayed =
+      viewer::Replay(TextPath(options.scene), {.threads = options.threads, .loadState = load, .onFrame = goOn});
   PrintDiagnostics(replayed.diagnostics());
   if (!replayed) return kInvalid;
   if (Interrupted()) {

@@ -20,7 +20,7 @@ int FramesOf(double seconds, const Scene& scene) {
   return int(std::clamp(frames, 0.0, double(kMostFrames)));
 }
 
-void ReportDivergence(const World& world, const Options& options, const Session& session) {
+void ReportDivergence(const World& world, const RunPlan& plan, const Options& options, const Session& session) {
   const StepReport& report = world.report();
   const Divergence& divergence = *report.divergence;
   std::fflush(stdout);
@@ -32,13 +32,26 @@ void ReportDivergence(const World& world, const Options& options, const Session&
   if (!divergence.remedy.empty()) std::fprintf(stderr, "  remedy: %s\n", divergence.remedy.c_str());
   std::fprintf(stderr, "  kept: %d good frames\n", report.frame);
   std::fprintf(stderr, "  reproduce: percale simulate %s --frames %d\n", SceneArguments(options, session).c_str(),
-               report.frame + 1);
+               report.frame + 1 - plan.firstFrame);
 }
 
 }  // namespace
 
-RunPlan PlanRun(const Options& options, const Scene& scene, int defaultFrames) {
+World MakeWorld(const Options& options, const Session& session) {
+  World world(session.state ? *session.state->scene : session.scene, {.threads = options.threads});
+  if (session.state) {
+    world.Restore(*session.state);
+    if (!options.set.empty()) world.Apply(session.scene);
+  }
+  while (!session.state && world.report().frame < session.frame && !world.report().divergence && !Interrupted())
+    world.Step();
+  return world;
+}
+
+RunPlan PlanRun(const Options& options, const World& world, int defaultFrames) {
+  const Scene& scene = world.scene();
   RunPlan plan;
+  plan.firstFrame = world.report().frame;
   plan.untilRest = options.untilRest;
   plan.frames = defaultFrames;
   if (options.untilRest) plan.frames = std::max(1, FramesOf(options.limit, scene));
@@ -47,6 +60,8 @@ RunPlan PlanRun(const Options& options, const Scene& scene, int defaultFrames) {
                     : options.seconds ? std::optional<int>(FramesOf(*options.seconds, scene))
                                       : std::nullopt;
   if (most) plan.frames = options.untilRest ? std::min(plan.frames, *most) : *most;
+  // A picture is asked for by its frame or time; all others by how much there is to do.
+  if (!most || options.verb != Verb::Shot) plan.frames = std::min(plan.firstFrame + plan.frames, kMostFrames);
   return plan;
 }
 
@@ -83,14 +98,15 @@ RunEnd Run(World& world, const RunPlan& plan, const Options& options, const Sess
   }
   progress.Finish(world.report());
   if (end == RunEnd::Diverged) {
-    ReportDivergence(world, options, session);
+    ReportDivergence(world, plan, options, session);
   } else if (end == RunEnd::Interrupted) {
     std::fprintf(stderr, "percale: interrupted after frame %d; what was done is kept\n", world.report().frame);
   } else if (end == RunEnd::Finished && plan.untilRest) {
     end = RunEnd::NotAtRest;
     std::fprintf(stderr,
                  "%s: warning: did not come to rest within %d frames (%.4g s); in the last one a point moved %.3g mm\n",
-                 PathText(session.file).c_str(), plan.frames, world.report().time, world.report().greatestMove * 1e3);
+                 PathText(session.file).c_str(), plan.frames - plan.firstFrame, world.report().time,
+                 world.report().greatestMove * 1e3);
   }
   return end;
 }

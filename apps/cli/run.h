@@ -12,14 +12,18 @@
 
 namespace percale::cli {
 
+/// The World of the session: at its start, or where its checkpoint or picture stands.
+World MakeWorld(const Options& options, const Session& session);
+
 /// How long to run.
 struct RunPlan {
-  int frames = 0;  ///< At most.
+  int firstFrame = 0;  ///< The World stands there.
+  int frames = 0;      ///< The last one, at most, counted from the start.
   bool untilRest = false;
 };
 
-/// The plan that the options state; `defaultFrames` where they state none.
-RunPlan PlanRun(const Options& options, const Scene& scene, int defaultFrames);
+/// The plan that the options state for a World as it stands; `defaultFrames` more where they state none.
+RunPlan PlanRun(const Options& options, const World& world, int defaultFrames);
 
 enum class RunEnd {
   Finished,     ///< All frames done.

@@ -11,6 +11,7 @@
 #include "io/atomic_file.h"
 #include "percale/parameters.h"
 #include "render/camera.h"
+#include "render/view_file.h"
 
 namespace percale::cli {
 namespace {
@@ -44,6 +45,12 @@ std::string PlaceText(const Place& place) {
 
 /// Sets what the presets state and the scene file does not. Returns an exit code.
 int ApplyPresets(const Options& options, Session& session) {
+  if (!options.presets.empty() && (session.state || session.view)) {
+    PrintError("--preset: " + PathText(session.file) +
+               " states every parameter itself, which wins; with --set preset=" + ShellWord(options.presets.front()) +
+               " the preset does");
+    return kUsage;
+  }
   for (const std::string& name : options.presets) {
     auto read = ReadPreset(options, "--preset", name);
     if (const int* code = std::get_if<int>(&read)) return *code;
@@ -171,13 +178,17 @@ std::variant<Session, int> OpenSession(const Options& options) {
   }
   Session session;
   session.file = *file;
-  auto scene = LoadScene(*file, &session.origins);
-  if (!scene) {
-    PrintDiagnostics(scene.diagnostics());
+  auto opened = OpenViewFile(*file);
+  if (!opened) {
+    PrintDiagnostics(opened.diagnostics());
     return kInvalid;
   }
-  session.scene = std::move(*scene);
-  Diagnostics warnings = scene.diagnostics();
+  session.scene = std::move(opened->scene);
+  session.origins = std::move(opened->origins);
+  session.view = std::move(opened->view);
+  session.state = std::move(opened->state);
+  session.frame = opened->frame;
+  Diagnostics warnings = opened.diagnostics();
 
   if (const int code = ApplyPresets(options, session); code != kDone) return code;
   if (const int code = ApplySettings(options, session); code != kDone) return code;

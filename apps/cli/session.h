@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -15,13 +16,19 @@
 #include "percale/diagnostic.h"
 #include "percale/scene.h"
 #include "percale/scene_file.h"
+#include "percale/world.h"
+#include "render/scene_view.h"
 
 namespace percale::cli {
 
-/// A scene with the command line's presets and assignments applied.
+/// A scene with the command line's presets and assignments applied. A checkpoint or a picture brings along
+/// where it stands (render/view_file.h).
 struct Session {
   Scene scene;
   std::filesystem::path file;
+  std::optional<percale::View> view;
+  std::shared_ptr<const WorldState> state;
+  int frame = 0;                                   ///< From the start, without a state.
   std::vector<Preset> presets;                     ///< Of --preset.
   std::vector<std::string> set;                    ///< Of --set, presets there replaced by what they set.
   Origins origins;                                 ///< Places in the file.

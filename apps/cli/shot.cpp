@@ -26,9 +26,15 @@ int Shot(const Options& options) {
   if (const int* code = std::get_if<int>(&studio)) return *code;
 
   CatchInterrupts();
-  World world(session.scene, {.threads = options.threads});
-  const RunEnd end = Run(world, PlanRun(options, session.scene, 0), options, session, [] { return int(kDone); });
-  if (const int code = WritePicture(std::get<Studio>(studio), world, file); code != kDone) return code;
+  World world = MakeWorld(options, session);
+  const RunPlan plan = PlanRun(options, world, 0);
+  if (plan.frames < plan.firstFrame) {
+    PrintError(PathText(session.file) + " stands at frame " + std::to_string(plan.firstFrame) +
+               "; there is no way back to frame " + std::to_string(plan.frames));
+    return kUsage;
+  }
+  const RunEnd end = Run(world, plan, options, session, [] { return int(kDone); });
+  if (const int code = WritePicture(std::get<Studio>(studio), world, session, file); code != kDone) return code;
   std::fprintf(options.output == "/dev/stdout" ? stderr : stdout, "%s: frame %d, %.4g s%s\n", PathText(file).c_str(),
                world.report().frame, world.report().time, world.report().atRest ? ", at rest" : "");
   return CodeOf(end);

@@ -194,7 +194,7 @@ int Simulate(const Options& options) {
   }
 
   CatchInterrupts();
-  World world(session.scene, {.threads = options.threads});
+  World world = MakeWorld(options, session);
   Recorder recorder(options, world);
   const bool records = !options.output.empty();
   if (records) {
@@ -207,7 +207,7 @@ int Simulate(const Options& options) {
   }
   RunTotals totals;
   const RunEnd end = Run(
-      world, PlanRun(options, session.scene, kDefaultFrames), options, session,
+      world, PlanRun(options, world, kDefaultFrames), options, session,
       [&] {
         const int code = reporting ? reports.OnFrame() : int(kDone);
         return code == kDone && records ? recorder.OnFrame() : code;

@@ -45,15 +45,19 @@ int View(const Options& options) {
   ViewerOptions viewer;
   viewer.scene = session.scene;
   viewer.sceneFile = session.file;
+  viewer.state = session.state;
+  viewer.frame = session.frame;
   viewer.presets = session.presets;
   viewer.set = session.set;
   viewer.root = *root;
-  viewer.view = MakeView(options, session.scene);
+  viewer.view = MakeView(options, session.scene, session.view);
   if (!options.uniforms.empty()) {
     ShaderLibrary shaders(*root / "shaders");
     const int code = ApplyUniforms(options, shaders.Parameters(viewer.view.look.shader), viewer.view);
     if (code != kDone) return code;
   }
+  viewer.keepUniforms = !options.shaderDefaults;
+  viewer.wholeUniforms = session.view.has_value();
   if (options.sizeGiven) {
     viewer.width = options.width;
     viewer.height = options.height;
@@ -92,12 +96,13 @@ int ShowWithoutDisplay(const Options& options) {
   auto studio = OpenStudio(run, session);
   if (const int* failure = std::get_if<int>(&studio)) return *failure;
   CatchInterrupts();
-  World world(session.scene, {.threads = run.threads});
+  World world = MakeWorld(run, session);
   const int filmed = Film(std::get<Studio>(studio), world, run, session, folder / DefaultOutput(session, ".mp4"),
                           kDemonstrationFrames);
   if (filmed != kDone && filmed != kInterrupted) return filmed;
   const fs::path picture = folder / DefaultOutput(session, ".png");
-  if (const int failure = WritePicture(std::get<Studio>(studio), world, picture); failure != kDone) return failure;
+  if (const int failure = WritePicture(std::get<Studio>(studio), world, session, picture); failure != kDone)
+    return failure;
   std::printf("%s: frame %d, %.4g s\n", PathText(picture).c_str(), world.report().frame, world.report().time);
   return filmed;
 }

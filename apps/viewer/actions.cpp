@@ -15,6 +15,8 @@ namespace {
 
 using enum SpecialKey;
 
+constexpr std::size_t kLeastHistory = std::size_t{64} << 20;  // That an action sets [bytes].
+
 constexpr Key Typed(char character) {
   return {.character = character};
 }
@@ -67,10 +69,30 @@ constexpr Action kActions[] = {
      .help = "One frame forth; after the last of the history, a new one",
      .key = Typed('.'), .repeats = true,
      .run = [](Session& session, UiState&) { return session.StepForward(); }},
+    {.name = "first_frame", .category = "Simulation", .title = "First frame", .help = "First frame of the history",
+     .key = Press(Home),
+     .run = [](Session& session, UiState&) { return session.Seek(session.snapshot().history.firstFrame); }},
+    {.name = "last_frame", .category = "Simulation", .title = "Last frame", .help = "Last frame of the history",
+     .key = Press(End),
+     .run = [](Session& session, UiState&) { return session.Seek(session.snapshot().history.lastFrame); }},
     {.name = "loop", .category = "Simulation", .title = "Loop the history",
      .help = "Show the history again and again, or stop",
      .key = Typed('l'),
      .run = [](Session& session, UiState&) { return session.ToggleLoop(); }},
+    {.name = "more_history", .category = "Simulation", .title = "More memory for the history",
+     .help = "Twice the memory for the history, or 64 MB where it is off",
+     .run = [](Session& session, UiState&) {
+       session.SetHistoryBudget(std::max(2 * session.snapshot().history.budget, kLeastHistory));
+       return true;
+     }},
+    {.name = "less_history", .category = "Simulation", .title = "Less memory for the history",
+     .help = "Half the memory for the history; below 64 MB none",
+     .enabled = [](const Session& session, const UiState&) { return session.snapshot().history.budget > 0; },
+     .run = [](Session& session, UiState&) {
+       const std::size_t half = session.snapshot().history.budget / 2;
+       session.SetHistoryBudget(half < kLeastHistory ? 0 : half);
+       return true;
+     }},
     {.name = "ball", .category = "Simulation", .title = "Shoot a ball", .help = "Shoot a ball to where the pointer is",
      .key = Typed('x'),
      .run = [](Session& session, UiState& state) {
@@ -141,6 +163,13 @@ constexpr Action kActions[] = {
        return true;
      }},
 
+    {.name = "new_shader", .category = "View", .title = "New shader", .help = "Make a shader from a template",
+     .run = [](Session&, UiState& state) { state.newShader.emplace(); return true; }},
+    {.name = "reset_uniforms", .category = "View", .title = "Reset the shader's values",
+     .help = "The shader's parameters back to their defaults",
+     .enabled = [](const Session& session, const UiState&) { return session.HasOwnUniforms(); },
+     .run = [](Session& session, UiState&) { session.ResetUniforms(); return true; }},
+
     {.name = "previous_scene", .category = "Scene", .title = "Previous scene",
      .help = "Previous scene file of the folder",
      .key = Typed('{'),
@@ -148,6 +177,22 @@ constexpr Action kActions[] = {
     {.name = "next_scene", .category = "Scene", .title = "Next scene", .help = "Next scene file of the folder",
      .key = Typed('}'),
      .run = [](Session& session, UiState&) { session.CycleScene(1); return true; }},
+    {.name = "save_state", .category = "Scene", .title = "Save a checkpoint",
+     .help = "Save the state to NAME-frameN.percale in the current folder",
+     .key = Control('s'),
+     .run = [](Session& session, UiState&) { session.SaveState(); return true; }},
+    {.name = "load_state", .category = "Scene", .title = "Load the newest checkpoint",
+     .help = "Back to the newest checkpoint of this scene",
+     .key = Control('l'),
+     .run = [](Session& session, UiState&) { return session.LoadNewestState(); }},
+    {.name = "picture", .category = "Scene", .title = "Take a picture",
+     .help = "Picture to NAME-1.png, -2, ...; dropped here it brings all this back",
+     .key = Press(F12),
+     .run = [](Session& session, UiState&) { session.TakePicture(); return true; }},
+    {.name = "record", .category = "Scene", .title = "Record a film",
+     .help = "Record the picture to NAME-1.mp4, -2, ..., or end it",
+     .key = Press(F9),
+     .run = [](Session& session, UiState&) { return session.ToggleRecording(); }},
     {.name = "reload", .category = "Scene", .title = "Reload all files",
      .help = "Read scene, shaders, textures again",
      .key = Press(F5),
@@ -219,7 +264,7 @@ constexpr MouseHelp kMouse[] = {
     {"Shift + left drag", "Drag cloth, pin, sphere or plane"},
     {"Shift + click", "Pin the cloth, or let it go"},
     {"Drag an arrow", "Move a sphere or plane along an axis"},
-    {"Drop a scene file", "Open it"},
+    {"Drop a file", "Open a scene, checkpoint or picture; another PNG is a texture"},
 };
 
 std::string_view SpecialName(SpecialKey special) {

@@ -39,6 +39,7 @@ void History::Clear() {
 
 void History::SetBudget(std::size_t bytes) {
   budget_ = bytes;
+  full_ = false;
   if (budget_ == 0) Clear();
   while (bytes_ > budget_ && states_.size() > 1) DropOldest();
 }

@@ -15,7 +15,7 @@ struct HistoryInfo {
   int firstFrame = 0, lastFrame = -1;  ///< Kept are all from the first to the last; none where last < first.
   std::size_t bytes = 0;               ///< Of memory in use.
   std::size_t budget = 0;              ///< 0: switched off.
-  bool full = false;                   ///< The budget has been reached since the last Clear: old frames have gone.
+  bool full = false;  ///< The budget has been reached since it was set, or the last Clear: old frames have gone.
 };
 
 class History {

@@ -33,6 +33,27 @@ std::string PlaceText(const Place& place) {
   return text.empty() ? text : text + ": ";
 }
 
+/// The line of a text that a message is about, as a terminal shows it: with its number, and a caret below.
+void DrawExcerpt(const Diagnostic& d) {
+  const std::string margin = d.place.line > 0 ? std::to_string(d.place.line) + " | " : "";
+  std::string text = d.excerpt;
+  std::replace(text.begin(), text.end(), '\t', ' ');
+  const float left = ImGui::GetCursorPosX();
+  ImGui::TextDisabled("%s", margin.c_str());
+  ImGui::SameLine(0, 0);
+  ImGui::TextUnformatted(text.c_str());
+  if (d.caret <= 0) return;
+  // The caret counts characters, of which UTF-8 has up to four bytes.
+  std::size_t bytes = 0;
+  for (int at = 1; at < d.caret && bytes < text.size(); ++at) {
+    do ++bytes;
+    while (bytes < text.size() && (static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80);
+  }
+  const ImVec2 before = ImGui::CalcTextSize((margin + text.substr(0, bytes)).c_str());
+  ImGui::SetCursorPosX(left + before.x);
+  ImGui::TextColored({1.0f, 0.52f, 0.45f, 1}, "^");
+}
+
 void DrawMessage(const Message& message) {
   const Diagnostic& d = message.diagnostic;
   ImGui::PushStyleColor(ImGuiCol_Text, SeverityColor(d.severity));
@@ -42,7 +63,7 @@ void DrawMessage(const Message& message) {
   Wrapped(PlaceText(d.place) + d.message);
   if (!d.excerpt.empty()) {
     ImGui::Indent();
-    Wrapped(d.excerpt);
+    DrawExcerpt(d);
     ImGui::Unindent();
   }
 }

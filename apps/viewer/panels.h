@@ -3,6 +3,7 @@
 /// The panels, each in a file of its own, and the column that holds them.
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "apps/viewer/frame_table.h"
@@ -47,6 +48,14 @@ float PanelColumnWidth(const UiState& state);
 void DrawPanelColumn(Session& session, UiState& state, float width, float height);
 /// What is wrong, at the lower edge of the picture; nothing when nothing is.
 void DrawMessages(Session& session, UiState& state, float pictureWidth, float height);
+/// Frames that are kept, at the lower edge of the picture; nothing without a history. Returns its height [screen unit].
+float DrawTimeBar(Session& session, UiState& state, float pictureWidth, float height);
+/// "history 12 / 256 MB"; empty without one.
+std::string HistoryText(const Session& session);
+/// While recording, a red dot and the seconds so far, in the upper right corner of the picture.
+void DrawRecordingLight(const Session& session, const UiState& state, float pictureWidth);
+/// Asks for the name of a new shader, where the user wants one.
+void DrawNewShader(Session& session, UiState& state, float pictureWidth, float height);
 /// In the upper left corner of the picture: paused or running, and which key helps.
 /// Below it, until the user has found them, the keys to begin with.
 void DrawStatusLine(Session& session, UiState& state, float pictureWidth);

@@ -17,7 +17,6 @@
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "io/json_document.h"
-#include "percale/checkpoint_file.h"
 #include "percale/parameters.h"
 #include "percale/scene_file.h"
 
@@ -230,7 +229,7 @@ class Player {
       command.before = line.Whole<std::uint64_t>("before");
     } else if (event == "load") {
       command.kind = Load;
-      Result<WorldState> state = LoadCheckpoint(TextPath(line.Text("file")));
+      Result<WorldState> state = options_.loadState(TextPath(line.Text("file")));
       if (!state) line.Fail(state.diagnostics());
       command.state = std::make_shared<const WorldState>(std::move(*state));
     } else if (event == "save") {
@@ -252,8 +251,12 @@ class Player {
     waiting_.erase(waiting_.begin(), std::next(found));  // Earlier ones were overtaken.
     if (!GoTo(line, line.Whole<int>("at"))) return false;
     looping_ = Loops(command.kind, looping_);
+    const bool loads = command.kind == Command::Kind::Load;
     timeline_->Execute(std::move(command));
     ++result_.commands;
+    if (loads && timeline_->Hash() != line.Hash("hash"))
+      line.Fail("the file of the `load` of command " + std::to_string(number) +
+                " holds another state than when the session loaded it");
     return Tell() && Compare(line);
   }
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <string>
 
+#include "percale/checkpoint_file.h"
 #include "percale/diagnostic.h"
 #include "percale/world.h"
 
@@ -15,6 +16,8 @@ namespace percale::viewer {
 
 struct ReplayOptions {
   int threads = 0;  ///< 0: as many as the machine has cores. The result does not depend on it.
+  /// Reads the state that a file holds, for `load`; by default a checkpoint.
+  std::function<Result<WorldState>(const std::filesystem::path&)> loadState = LoadCheckpoint;
   /// Called after each frame and command with the World as it is. False: stop.
   std::function<bool(const World&)> onFrame = {};
 };

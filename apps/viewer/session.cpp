@@ -1,12 +1,13 @@
 #include "apps/viewer/session.h"
 
 #include <algorithm>
+#include <chrono>
 #include <system_error>
 #include <utility>
 
 #include "core/text.h"
 #include "io/atomic_file.h"
-#include "percale/scene_file.h"
+#include "render/shader_text.h"
 
 namespace percale::viewer {
 namespace {
@@ -73,6 +74,10 @@ bool SameView(const OrbitCamera& a, const OrbitCamera& b) {
          a.elevation() == b.elevation();
 }
 
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 /// Messages that concern the whole session are for the terminal as well.
 bool GoesToTerminal(const std::string& source) {
   return source.rfind("settings", 0) != 0 && source.rfind("input ", 0) != 0 && source != "preset";
@@ -103,10 +108,17 @@ Session::Session(const ViewerOptions& options, GlDevice& device, SessionLog log,
       sceneFile_(options.sceneFile),
       browsed_(options.sceneFile),
       sceneWatch_(options.sceneFile),
+      background_(wake),
+      wake_(wake),
+      kept_(options.root / "shaders", options.keepUniforms),
+      givenShader_(options.view.look.shader),
+      givenUniforms_(options.view.uniforms),
+      givenAreWhole_(options.wholeUniforms),
       simulation_(options.scene, {options.threads, log_.enabled(), options.historyBudget, std::move(wake)}) {
   view_ = options_.view;
   scene_.look = view_.look;
   cameraMoved_ = !SameView(view_.camera, OrbitCamera::ForScene(scene_));
+  AdoptUniforms();
   simulation_.TakeSnapshot(snapshot_);
 }
 
@@ -163,17 +175,16 @@ bool Session::Seek(int frame) {
   return true;
 }
 
-/// The frame that is shown, or will be when what was sent is done.
-int Session::Frame() const {
+int Session::frame() const {
   return sought_ > lastDone_ && sought_ == lastSent_ ? soughtFrame_ : snapshot_.report.frame;
 }
 
 bool Session::StepBack() {
-  return Seek(Frame() - 1);
+  return Seek(frame() - 1);
 }
 
 bool Session::StepForward() {
-  return Seek(Frame() + 1) || StepOneFrame();
+  return Seek(frame() + 1) || StepOneFrame();
 }
 
 bool Session::ToggleLoop() {
@@ -189,6 +200,9 @@ bool Session::ToggleLoop() {
 }
 
 void Session::SetHistoryBudget(std::size_t bytes) {
+  if (bytes == snapshot_.history.budget) return;
+  toldFull_ = false;
+  messages_.Set("history budget", {});
   Send({.kind = Command::Kind::Budget, .budget = bytes});
 }
 
@@ -198,7 +212,7 @@ bool Session::Undo() {
   const Change* change = undo_.ToUndo();
   if (!change) return false;
   if (log_.enabled()) log_.Write(LogLine("undo").Text("label", change->label));
-  undo_.Undone(Travel(*change, change->before));
+  undo_.Undone(Travel(*change, false));
   return true;
 }
 
@@ -206,13 +220,18 @@ bool Session::Redo() {
   const Change* change = undo_.ToRedo();
   if (!change) return false;
   if (log_.enabled()) log_.Write(LogLine("redo").Text("label", change->label));
-  undo_.Redone(Travel(*change, change->after));
+  undo_.Redone(Travel(*change, true));
   return true;
 }
 
-std::uint64_t Session::Travel(const Change& change, const Scene& settings) {
+std::uint64_t Session::Travel(const Change& change, bool forth) {
+  if (change.texture) {
+    view_.textures[0] = forth ? change.textureAfter : change.textureBefore;
+    LogTexture(0);
+    return 0;
+  }
   if (change.settings) {
-    scene_ = settings;
+    scene_ = forth ? change.after : change.before;
     AdoptLook();
     CheckSettings();
   }
@@ -402,6 +421,7 @@ void Session::AdoptLook() {
   const bool other = view_.look.shader != scene_.look.shader;
   view_.look = scene_.look;
   if (!other) return;
+  AdoptUniforms();
   if (log_.enabled()) log_.Write(LogLine("shader").Text("name", view_.look.shader));
   RefreshShaderMessages();
 }
@@ -478,12 +498,43 @@ UniformValue Session::Uniform(const ShaderParameter& parameter) const {
 
 void Session::SetUniform(const ShaderParameter& parameter, const UniformValue& value) {
   view_.uniforms[parameter.name] = value;
+  kept_.Set(view_.look.shader, parameter.name, value, Now());
   messages_.Set(InputSource(parameter), {});
   if (!log_.enabled()) return;
   log_.Write(LogLine("uniform")
                  .Text("shader", view_.look.shader)
                  .Text("name", parameter.name)
                  .Vector("value", {value[0], value[1], value[2]}));
+}
+
+void Session::ResetUniforms() {
+  kept_.Clear(view_.look.shader, Now());
+  if (view_.look.shader == givenShader_) givenShader_.clear();
+  view_.uniforms.clear();
+  if (log_.enabled()) log_.Write(LogLine("uniforms").Text("shader", view_.look.shader));
+}
+
+/// The values of the current shader: what came with it before what is kept.
+void Session::AdoptUniforms() {
+  const std::string& shader = view_.look.shader;
+  const UniformValues kept = kept_.Of(shader, shaders_.Parameters(shader));
+  view_.uniforms = shader == givenShader_ ? givenUniforms_ : UniformValues();
+  if (shader != givenShader_ || !givenAreWhole_) view_.uniforms.insert(kept.begin(), kept.end());
+  messages_.Set("values of " + shader, kept_.Problems(shader));
+}
+
+Status Session::CreateShader(const std::string& name) {
+  const Result<std::filesystem::path> file = percale::CreateShader(shaders_.folder(), name);
+  if (!file) return file.diagnostics();
+  shaders_.ReloadChanged();
+  SetShader(name);
+  std::error_code error;
+  const std::filesystem::path whole = std::filesystem::absolute(*file, error);
+  Diagnostic note = MakeError(PathText(error ? *file : whole.lexically_normal()),
+                              "is the new shader: edit it in any editor; each time it is saved it shows here at once");
+  note.severity = Severity::Note;
+  messages_.Set("new shader", {note});
+  return Ok();
 }
 
 void Session::RefuseUniform(const ShaderParameter& parameter, const std::string& why) {
@@ -516,16 +567,19 @@ bool Session::Load(const std::filesystem::path& file, const std::string& source,
     messages_.Set(source, {MakeError(PathText(file), "expected a scene file, got a device or pipe")});
     return false;
   }
-  Origins origins;
-  Result<Scene> loaded = LoadScene(file, &origins);
+  Result<ViewFile> opened = OpenViewFile(file);
+  Result<Scene> loaded = opened ? Result<Scene>(std::move(opened->scene), opened.diagnostics()) : opened.diagnostics();
   if (!loaded) {
     messages_.Set(source, loaded.diagnostics());
     return false;
   }
-  statesShader = origins.count("/look/shader") > 0;
+  statesShader = opened->view || opened->state || opened->origins.count("/look/shader") > 0;
   Diagnostics problems;
   if (file == options_.sceneFile) {
-    for (const Preset& preset : options_.presets) ApplyBelow(preset, origins, *loaded);
+    // A checkpoint or a picture states all of its values.
+    for (const Preset& preset : options_.presets) {
+      if (!opened->view && !opened->state) ApplyBelow(preset, opened->origins, *loaded);
+    }
     for (const std::string& assignment : options_.set) {
       const auto applied = ApplyAssignment(*loaded, assignment);
       if (applied) continue;
@@ -659,6 +713,9 @@ bool Session::Update(double now) {
   } else if (stateUnlogged_ && now >= lastState_ + kStatePeriod) {
     LogState(now);
   }
+  news |= ReadReports(background_.TakeReports());
+  news |= ReadFilm();
+  kept_.WriteDue(now);
   if (const std::string failure = simulation_.TakeFailure(); !failure.empty()) {
     messages_.Set("simulation", {MakeError(failure + "; open another scene file to go on, or close the viewer")});
     news = true;
@@ -667,11 +724,19 @@ bool Session::Update(double now) {
     if (nextLook_ == 0) {  // The first look, when the log has its first line.
       CheckSettings();
       RefreshShaderMessages();
+      if (options_.state) SendState(sceneFile_, options_.state, false);
+      if (options_.state && !options_.set.empty()) SendSettings(LogLine("settings"));
+      if (!options_.state) SendFrames(options_.frame);
     }
     nextLook_ = now + kLookPeriod;
     if (shaders_.ReloadChanged()) {
       if (log_.enabled()) log_.Write(LogLine("reload").Text("what", "shaders"));
       RefreshShaderMessages();
+      news = true;
+    }
+    if (kept_.Changed(view_.look.shader)) {
+      AdoptUniforms();
+      if (log_.enabled()) log_.Write(LogLine("reload").Text("what", "uniforms"));
       news = true;
     }
     news |= LookAtTextures();
@@ -706,6 +771,7 @@ void Session::ReadSnapshot(double now) {
                      .Flag("kept", done.stateKept));
     }
     if (done.scene && done.command > lastApply_) AdoptSettings(*done.scene);
+    if (done.state) KeepState(done.command, done.state);
     if (!done.failure.empty()) {
       messages_.Set("history", {MakeError(done.failure)});
       SendSettings(LogLine("settings"));  // Those that the panels show.
@@ -722,6 +788,12 @@ void Session::ReadSnapshot(double now) {
                                  divergence->remedy + "; then press R"));
   }
   messages_.Set("divergence", problems);
+  if (snapshot_.history.full && !toldFull_) {
+    toldFull_ = true;
+    Diagnostic note = MakeError("the history has filled the memory it may take: from now on the oldest frames go");
+    note.severity = Severity::Note;
+    messages_.Set("history budget", {note});
+  }
   stateUnlogged_ = true;
   if (!snapshot_.executed.empty() || now >= lastState_ + kStatePeriod) LogState(now);
 }

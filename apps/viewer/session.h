@@ -8,23 +8,36 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "apps/viewer/background.h"
 #include "apps/viewer/file_watch.h"
 #include "apps/viewer/frame_table.h"
+#include "apps/viewer/kept_uniforms.h"
 #include "apps/viewer/messages.h"
+#include "apps/viewer/recorder.h"
 #include "apps/viewer/session_log.h"
 #include "apps/viewer/simulation.h"
 #include "apps/viewer/undo.h"
 #include "apps/viewer/viewer.h"
 #include "percale/parameters.h"
 #include "render/gl_device.h"
+#include "render/image.h"
 #include "render/scene_view.h"
+#include "render/view_file.h"
 
 namespace percale::viewer {
+
+/// A picture that the user wants: of that state, so seen.
+struct PictureOrder {
+  std::shared_ptr<const WorldState> state;
+  View view;
+};
 
 class Session {
  public:
@@ -54,6 +67,8 @@ class Session {
   bool StepBack();       ///< To the frame before, paused.
   bool StepForward();    ///< To the frame after, paused; after the last, one new frame.
   bool ToggleLoop();     ///< Shows the history again and again, or stops.
+  /// The frame that is shown, or will be when what was sent is done.
+  int frame() const;
   void SetHistoryBudget(std::size_t bytes);
   /// While the user holds a control, its changes count as one.
   void HoldChanges(bool held) { undo_.Hold(held); }
@@ -101,6 +116,11 @@ class Session {
   std::span<const ShaderParameter> ShaderParameters();  ///< Of the current shader.
   UniformValue Uniform(const ShaderParameter& parameter) const;
   void SetUniform(const ShaderParameter& parameter, const UniformValue& value);
+  /// The current shader's parameters as the shader has them; forgets what was kept.
+  void ResetUniforms();
+  bool HasOwnUniforms() const { return !view_.uniforms.empty(); }
+  /// Makes a shader from the template, and draws with it.
+  Status CreateShader(const std::string& name);
   void RefuseUniform(const ShaderParameter& parameter, const std::string& why);
   const std::vector<std::string>& shaderNames() const { return shaders_.names(); }
 
@@ -110,6 +130,27 @@ class Session {
   bool OpenScene(const std::filesystem::path& file);
   /// The scene files of the folder that the current one is in, by name.
   std::vector<std::filesystem::path> SceneFiles() const;
+  /// A scene, checkpoint, or picture that tells what it shows; another picture becomes the first texture.
+  bool OpenFile(const std::filesystem::path& file);
+  /// Of the shaders, number 0..3. Can be undone.
+  void SetTexture(std::size_t number, const std::filesystem::path& file);
+  /// Saves the state to NAME-frameN.percale in the current folder.
+  void SaveState();
+  /// To the newest such file, of the current folder and the scene's. Can be undone. Returns whether there is one.
+  bool LoadNewestState();
+  /// Orders a picture of what is shown, to be called NAME-1.png, NAME-2.png, ... in the current folder.
+  void TakePicture();
+  /// Pictures to be drawn and handed to KeepPicture.
+  std::vector<PictureOrder> TakePictureOrders();
+  void KeepPicture(Image image, const PictureOrder& order);
+  void FailPicture(const Diagnostics& why) { messages_.Set("saving a picture", why); }
+  /// Starts a film, or ends it. Returns false while the one before is not ended yet.
+  bool ToggleRecording();
+  /// The film under way, or null; it wants pictures.
+  Recorder* recorder() { return recorder_ && !recorder_->stopped() ? recorder_.get() : nullptr; }
+  std::optional<double> RecordedSeconds() const;
+  /// At the end: waits until everything that was to be saved is. `draw` draws the pictures of orders.
+  void FinishFiles(const std::function<void(const PictureOrder&)>& draw);
   /// The scene file that follows the current one in its folder, or with `by` < 0 the one before.
   void CycleScene(int by);
   const std::filesystem::path& sceneFile() const { return sceneFile_; }
@@ -130,6 +171,15 @@ class Session {
  private:
   /// Reads the scene and applies the assignments to it; reports what is wrong as of `source`.
   bool Load(const std::filesystem::path& file, const std::string& source, Scene& scene, bool& statesShader);
+  std::filesystem::path OutputStem() const;
+  void KeepState(std::uint64_t command, std::shared_ptr<const WorldState> state);
+  bool ReadReports(const std::vector<JobReport>& reports);
+  std::uint64_t SendState(const std::filesystem::path& file, std::shared_ptr<const WorldState> state, bool undoable);
+  void SendFrames(int frames);
+  bool UsesTexture(std::size_t number);
+  void LogTexture(std::size_t number);
+  void AdoptUniforms();
+  bool ReadFilm();
   void ReloadScene();
   void ReloadTextures(const std::vector<std::filesystem::path>& files);
   bool LookAtTextures();
@@ -148,9 +198,8 @@ class Session {
   std::uint64_t SendHandles(bool undoable);
   void AdoptSettings(Scene settings);
   void Run(bool running);
-  int Frame() const;
-  /// Goes to the other side of a change; returns the command whose state before it leads back, or 0.
-  std::uint64_t Travel(const Change& change, const Scene& settings);
+  /// Takes a change back, or does it again; returns the command whose state before it leads back, or 0.
+  std::uint64_t Travel(const Change& change, bool forth);
 
   const ViewerOptions options_;
   GlDevice& device_;
@@ -170,6 +219,19 @@ class Session {
   FrameTable frames_;
   UndoStack undo_;
   std::vector<Handle> handles_;
+  struct SaveOrder {
+    enum What { Checkpoint, Picture } what;
+    View view;
+  };
+  std::map<std::uint64_t, SaveOrder> saves_;  // By the command that hands out the state.
+  std::vector<PictureOrder> pictureOrders_;
+  Background background_;
+  std::function<void()> wake_;
+  std::unique_ptr<Recorder> recorder_;
+  KeptUniforms kept_;
+  std::string givenShader_;      // The one that was begun with, or that a picture showed...
+  UniformValues givenUniforms_;  // ...with these values, which come before those that are kept...
+  bool givenAreWhole_;           // ...or stand alone.
   Simulation simulation_;
   bool wantsRunning_ = false, wantsLooping_ = false;
   std::uint64_t lastSent_ = 0, lastDone_ = 0, lastApply_ = 0;
@@ -178,6 +240,7 @@ class Session {
   double nextLook_ = 0;    // At the files [s].
   double lastState_ = -1;  // Logged [s].
   bool stateUnlogged_ = false;
+  bool toldFull_ = false;  // That the history has reached its budget.
   std::set<std::string> reportedShaders_;
   std::int64_t pictures_ = 0;
 };

@@ -22,12 +22,17 @@
 ///   gust     velocity [m/s], drag [kg/(m^2 s)], start [s from now], duration [s], command
 ///   seek     frame, command: to that frame of the history
 ///   restore  before, command: to the state before the command of that number
-///   load     file, hash, command: to a checkpoint
+///   save     command: the state is handed out, for a checkpoint or a picture
+///   load     file, config, command: to the state in a checkpoint or a picture; the hash is in its line `done`
+///   saved    what ("checkpoint", "picture", "film"), file: it has been written
+///   record   recording: a film begins or ends
 ///   budget   bytes, command: of history
 ///   undo     label, and redo: what the lines after it do
 ///   set      path ("/cloth/0/ks"), value, command (absent where the simulation has no part in it)
 ///   uniform  shader, name, value (three numbers)
+///   uniforms shader: all values are the shader's defaults again
 ///   shader   name: the shader that is drawn with from now on
+///   texture  number (1 to 4), file: the shaders' texture from now on; empty: the project's own
 ///   wireframe visible: the springs are drawn over the shader, or no longer
 ///   camera   azimuth, elevation [degree], distance [m], target [m]
 ///   done     command, at, frame, hash, kept: a command was carried out after frame `at` and left `frame`;
@@ -38,7 +43,7 @@
 ///            and ten times per second while running.
 ///   message  severity, source, text, and file, line, column where there is a place
 ///   mended   source: what messages of that source complained of is over
-///   reload   what ("scene" or "shaders"), file
+///   reload   what ("scene", "shaders", "texture", "uniforms"), file
 ///   open     scene: another scene file
 ///   heat_map quantity ("off", "stretch", ...), fixed, and low, high where the range is fixed
 ///   overlays normals, pins, contacts, boxes: whether each is shown

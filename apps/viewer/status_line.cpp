@@ -56,6 +56,7 @@ void DrawStatusLine(Session& session, UiState& state, float pictureWidth) {
   else
     text += "   paused: P runs, N steps one frame";
   text += "   F1 help";
+  if (const std::string history = HistoryText(session); !history.empty()) text += "   " + history;
   const float margin = 10 * state.scale;
   const float width = std::max(pictureWidth - 2 * margin, 1.0f);
   const float height = DrawText(text, margin, margin, width, state.scale);

@@ -30,6 +30,12 @@ struct Box {
 /// Who gets the arrow keys, Enter, Space and Tab.
 enum class KeyboardIn { Picture, Panels, Console };
 constexpr int kKeyboardMoves = 2;  // Pictures.
+/// The name that is being typed for a new shader.
+struct NewShaderInput {
+  char name[65] = {};
+  bool fresh = true;    ///< The box is to get the keyboard.
+  std::string problem;  ///< With the name before.
+};
 
 struct UiState {
   UiSettings kept;  ///< From one start to the next.
@@ -48,6 +54,7 @@ struct UiState {
   double frameSeconds = 0;
   double drawSeconds = 0;  ///< Of a picture and the panels [s].
 
+  std::optional<NewShaderInput> newShader;
   /// The colours of the last picture, and the range that is being typed for them.
   HeatScale heatScale;
   ValueRange typedRange;

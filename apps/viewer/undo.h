@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Change {
   Scene before = {}, after = {};  ///< The settings.
   std::uint64_t command = 0;      ///< The command that was executed for it and whose state before it is kept, or 0.
   bool settings = false;          ///< The settings differ.
+  bool texture = false;           ///< Another file is the shaders' first texture; the settings do not differ.
+  std::filesystem::path textureBefore = {}, textureAfter = {};
 };
 
 class UndoStack {

@@ -26,6 +26,7 @@
 #include "io/atomic_file.h"
 #include "percale/parameters.h"
 #include "render/gl_device.h"
+#include "render/legend.h"
 
 namespace percale {
 namespace viewer {
@@ -40,6 +41,8 @@ constexpr double kActiveTime = 0.5;
 constexpr int kActivePictures = 3;
 /// How long to sleep at most when nothing happens: files are to be looked at [s].
 constexpr double kSleep = 0.05;
+/// Samples per pixel of pictures for files, where time matters less.
+constexpr int kFileSamples = 4;
 /// Share of a new value in the smoothed times.
 constexpr double kSmoothing = 0.1;
 /// A window that was kept is opened no smaller and no larger [pixel].
@@ -111,7 +114,7 @@ class Viewer {
         activeUntil = now + kActiveTime;
         picturesDue = kActivePictures;
       }
-      if (now >= activeUntil && picturesDue <= 0 && !typing_) continue;
+      if (now >= activeUntil && picturesDue <= 0 && !typing_ && !session_.recorder()) continue;
       if (now < nextPicture) continue;
       nextPicture = now + 1 / kMostPictures;
       if (window_.Minimized()) {
@@ -125,6 +128,7 @@ class Viewer {
     KeepSettings();
     // A large cloth may need a while to finish its frame: the window need not stay for that.
     window_.Hide();
+    session_.FinishFiles([this](const PictureOrder& order) { DrawOrder(order); });
     const int code = interrupted ? kExitInterrupted : 0;
     session_.log().Write(LogLine("exit").Number("code", code));
     return code;
@@ -157,12 +161,13 @@ class Viewer {
 
   void HandleKeys(const std::vector<InputEvent>& events) {
     for (const InputEvent& event : events) {
-      if (event.kind == InputEvent::Kind::Drop) session_.OpenScene(event.file);
+      if (event.kind == InputEvent::Kind::Drop) session_.OpenFile(event.file);
       if (event.kind == InputEvent::Kind::Key) HandleKey(event);
     }
   }
 
   void HandleKey(const InputEvent& event) {
+    if (state_.newShader && event.key.special == SpecialKey::Escape) return state_.newShader.reset();
     if (TakePaletteKey(event.key, session_, state_)) return;
     // ImGui goes on to want text for a picture after the box has had its Enter.
     const bool typing = ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
@@ -246,6 +251,8 @@ class Viewer {
     // What the keys and panels have just changed shows at once.
     session_.Update(Now());
     DrawScene();
+    Record();
+    for (const PictureOrder& order : session_.TakePictureOrders()) DrawOrder(order);
     DrawHeatLegend(state_);
     window_.EndPanels();
     window_.SetTitle(session_.Title());
@@ -261,12 +268,15 @@ class Viewer {
     if (state_.kept.panelsVisible) {
       DrawStatusLine(session_, state_, static_cast<float>(PictureWidth()));
       DrawPanelColumn(session_, state_, width, height);
-      DrawMessages(session_, state_, static_cast<float>(PictureWidth()), height);
+      const float bar = DrawTimeBar(session_, state_, static_cast<float>(PictureWidth()), height);
+      DrawMessages(session_, state_, static_cast<float>(PictureWidth()), height - bar);
     }
     DrawPlotsWindow(session_, state_, static_cast<float>(PictureWidth()), height);
     DrawInspector(session_, state_, PictureWidth(), height_);
     DrawConsole(session_, state_, static_cast<float>(PictureWidth()), height);
     DrawHelp(session_, state_, width, height);
+    DrawNewShader(session_, state_, static_cast<float>(PictureWidth()), height);
+    DrawRecordingLight(session_, state_, static_cast<float>(PictureWidth()));
     DrawPalette(session_, state_, width, height);
   }
 
@@ -276,11 +286,78 @@ class Viewer {
     if (gizmo) percale::viewer::DrawGizmo(*gizmo, hand_.axis(), state_);
   }
 
-  void DrawScene() {
+  /// Size of the picture [pixel].
+  PictureSize Pixels() const {
     int pixels = 0, rows = 0;
     window_.FramebufferSize(pixels, rows);
-    const int columns = std::max(1, static_cast<int>(static_cast<double>(pixels) * PictureWidth() / width_));
-    rows = std::max(rows, 1);
+    return {std::max(1, static_cast<int>(static_cast<double>(pixels) * PictureWidth() / width_)), std::max(rows, 1)};
+  }
+
+  /// A picture for a file: of its own state, since the simulation may have gone on.
+  void DrawOrder(const PictureOrder& order) {
+    const Snapshot& snapshot = session_.snapshot();
+    const PictureSize size = Pixels();
+    Result<RenderTarget> target = RenderTarget::Create(size.width, size.height, kFileSamples);
+    if (!target) return session_.FailPicture(target.diagnostics());
+    const WorldState& state = *order.state;
+    shapes_.clear();
+    orderVelocities_.resize(state.cloths.size());
+    for (std::size_t c = 0; c < state.cloths.size() && c < snapshot.cloths.size(); ++c) {
+      const ClothTopology& topology = *snapshot.cloths[c].topology;
+      // Another cloth has taken its place since.
+      if (topology.uv.size() != state.cloths[c].positions.size()) return session_.TakePicture();
+      const WorldState::Cloth& cloth = state.cloths[c];
+      std::vector<Vec3>& velocities = orderVelocities_[c];
+      velocities.resize(cloth.positions.size());
+      for (std::size_t i = 0; i < velocities.size(); ++i)
+        velocities[i] = (cloth.positions[i] - cloth.previous[i]) / state.scene->TimeStep();
+      shapes_.push_back({cloth.positions, topology.uv, topology.triangles, topology.springs, topology.rest, velocities,
+                         topology.pinned});
+    }
+    target->Bind();
+    const DrawList& list = sceneView_.Update(*state.scene, shapes_, order.view, size.width, size.height, state.balls);
+    if (const Status drawn = device_.Draw(list, size.width, size.height); !drawn)
+      return session_.FailPicture(drawn.diagnostics());
+    Image image = target->Read();
+    DrawLegend(image, list.heatScale);
+    session_.KeepPicture(std::move(image), order);
+  }
+
+  /// The picture that has just been drawn, for the film.
+  void Record() {
+    Recorder* const recorder = session_.recorder();
+    const double now = Now();
+    if (!recorder || !recorder->Wants(now)) return;
+    const PictureSize size = Pixels();
+    if (recorder->width() == 0 || (recorder->width() == size.width && recorder->height() == size.height)) {
+      AddToFilm(ReadFramebuffer(size.width, size.height), now);
+      return;
+    }
+    // The window has changed its size, the film cannot.
+    if (!filmTarget_ || filmTarget_->width() != recorder->width() || filmTarget_->height() != recorder->height()) {
+      filmTarget_.reset();
+      Result<RenderTarget> target = RenderTarget::Create(recorder->width(), recorder->height(), window_.samples());
+      if (!target) return;  // The picture before stays.
+      filmTarget_.emplace(std::move(*target));
+    }
+    filmTarget_->Bind();
+    Draw(recorder->width(), recorder->height());
+    AddToFilm(filmTarget_->Read(), now);
+  }
+
+  void AddToFilm(Image image, double now) {
+    DrawLegend(image, scale_);
+    session_.recorder()->Add(std::move(image), now);
+  }
+
+  void DrawScene() {
+    const auto [columns, rows] = Pixels();
+    const Status drawn = Draw(columns, rows);
+    state_.heatScale = scale_;
+    session_.ReportDrawing(drawn, device_.TakeWarnings());
+  }
+
+  Status Draw(int columns, int rows) {
     const Snapshot& snapshot = session_.snapshot();
     shapes_.clear();
     for (const ClothCopy& cloth : snapshot.cloths) {
@@ -289,9 +366,8 @@ class Viewer {
                          cloth.velocities, topology.pinned});
     }
     const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows, snapshot.balls);
-    state_.heatScale = list.heatScale;
-    const Status drawn = device_.Draw(list, columns, rows);
-    session_.ReportDrawing(drawn, device_.TakeWarnings());
+    scale_ = list.heatScale;
+    return device_.Draw(list, columns, rows);
   }
 
   void SmoothTimes() {
@@ -341,6 +417,9 @@ class Viewer {
   Hand hand_;
   SceneView sceneView_;
   std::vector<ClothShape> shapes_;
+  std::optional<RenderTarget> filmTarget_;
+  std::vector<std::vector<Vec3>> orderVelocities_;      // Of a picture for a file.
+  HeatScale scale_;                                     // Of what was drawn last.
   std::map<std::string, Box> lastBoxes_, loggedBoxes_;  // Of the last picture, and as the log has them.
   int width_ = 0, height_ = 0;                          // Of the window [screen unit].
   std::int64_t smoothedStep_ = 0;

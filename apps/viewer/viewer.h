@@ -4,22 +4,29 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "io/preset_file.h"
 #include "percale/scene.h"
+#include "percale/world.h"
 #include "render/scene_view.h"
 
 namespace percale {
 
 struct ViewerOptions {
-  Scene scene;                       ///< As loaded, with `set` applied; must pass CheckScene.
-  std::filesystem::path sceneFile;   ///< Where it is from: watched, and read again when it changes and by F5.
+  Scene scene;                      ///< As loaded, with `set` applied; must pass CheckScene.
+  std::filesystem::path sceneFile;  ///< Where it is from: watched, and read again when it changes and by F5.
+  /// Where it stands: a checkpoint's or picture's state, else so many frames from the start.
+  std::shared_ptr<const WorldState> state;
+  int frame = 0;
   std::vector<Preset> presets;       ///< For what `sceneFile` does not state, each time it is read.
   std::vector<std::string> set;      ///< "PATH=VALUE", applied again each time `sceneFile` is read.
   std::filesystem::path root = ".";  ///< The project's folder, with shaders/ and textures/.
   View view;                         ///< What the window opens with.
+  bool keepUniforms = true;          ///< Read and keep the values of shaders' parameters (render/shader_values.h).
+  bool wholeUniforms = false;        ///< `view` has all of its shader's, so that those kept do not count.
   int width = 0, height = 0;         ///< Of the window, on a display of ordinary density [pixel]; 0: as last time.
   double uiScale = 0;                ///< Of text and controls; 0: as the display asks for.
   int samples = 0;                   ///< Per pixel; 0: 4, or 1 where the CPU draws.

@@ -14,7 +14,11 @@ CHECKS = {
     "reset": ("reset", {}),
     "step_back": ("seek", {}),
     "step_forward": ("seek", {}),
+    "first_frame": ("seek", {}),
+    "last_frame": ("seek", {}),
     "loop": ("loop", {}),
+    "more_history": ("budget", {}),
+    "less_history": ("budget", {}),
     "ball": ("ball", {}),
     "gust": ("gust", {}),
     "undo": ("undo", {}),
@@ -30,6 +34,12 @@ CHECKS = {
     "boxes": ("overlays", {}),
     "inspector": ("inspector", {}),
     "hold_vertex": ("inspector", {"held": True}),
+    "new_shader": ("widget", {"name": "new shader name"}),
+    "reset_uniforms": ("uniforms", {}),
+    "save_state": ("saved", {"what": "checkpoint"}),
+    "load_state": ("load", {}),
+    "picture": ("saved", {"what": "picture"}),
+    "record": ("record", {"recording": True}),
     "previous_scene": ("open", {}),
     "next_scene": ("open", {}),
     "reload": ("reload", {"what": "scene"}),
@@ -72,12 +82,24 @@ class Actions(ViewerTest):
             again = viewer.mark()
             viewer.xdotool("key", {"pause": "p", "loop": "l"}[name])
             viewer.wait("run", again, running=False)
+        if name == "record":
+            again = viewer.mark()
+            viewer.xdotool("key", "F9")
+            viewer.wait("saved", again, what="film")
+        if name == "new_shader":
+            again = viewer.mark()
+            viewer.xdotool("key", "Escape")
+            viewer.wait("widget", again, name="new shader name", width=0)
         viewer.settle()
 
     def prepare(self, viewer, name):
         if name == "step_back":  # There is a past to go back to.
             viewer.step()
             viewer.step()
+        if name == "reset_uniforms":  # There is something to reset.
+            since = viewer.mark()
+            viewer.click("uniform.u_diffuse_on")
+            viewer.wait("uniform", since)
         if name == "redo":
             viewer.key("ctrl+z", "undo")
             viewer.settle()

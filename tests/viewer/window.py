@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -70,7 +71,7 @@ class Display:
 class Viewer:
     """One run of the program. Use it in a with block; `events` holds the log so far."""
 
-    def __init__(self, display, *arguments, environment=None):
+    def __init__(self, display, *arguments, environment=None, cwd=None):
         self.folder = tempfile.mkdtemp(prefix="percale-viewer-")
         self.log = os.path.join(self.folder, "session.log")
         # What the viewer keeps for the next start is no business of the user who runs the tests.
@@ -79,8 +80,10 @@ class Viewer:
         self.environment.pop("WAYLAND_DISPLAY", None)
         self.errors = open(os.path.join(self.folder, "stderr"), "w+", encoding="utf-8", errors="replace")
         root = [] if "-r" in arguments else ["-r", ROOT]
+        # In the checkout nothing is to be kept, and nothing that was kept there is to count.
+        root += ["--shader-defaults"] if root else []
         self.process = subprocess.Popen([PERCALE, "view", *arguments, *root, "--log", self.log], env=self.environment,
-                                        cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                        cwd=cwd or self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                         stderr=self.errors)
         self.events = []
         self.read = 0
@@ -247,6 +250,11 @@ class Viewer:
             wait_for(f"{name} to take {text!r}", probe)
         finally:
             self.xdotool("keyup", "Return")
+
+    def drop(self, path):
+        """What a file manager does when a file is dropped on the window (the XDND protocol)."""
+        subprocess.run([sys.executable, os.path.join(os.path.dirname(os.path.abspath(__file__)), "drop.py"),
+                        self.window, path], env=self.environment, check=True, timeout=PATIENCE)
 
     def close_window(self):
         """What a window manager sends when the user closes the window."""
