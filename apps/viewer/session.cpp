@@ -19,8 +19,9 @@ constexpr double kStatePeriod = 0.1;
 
 // A grip holds so much of the cloth's extent around it, but at least so many spacings of its grid.
 constexpr double kGripShare = 0.06, kGripSpacings = 2.5;
-// A ball, for a cloth of 1 m: its radius [m], its share of the cloths' mass, its speed [m/s].
-constexpr double kBallSize = 0.1, kBallMass = 0.1, kBallSpeed = 5;
+// A ball, for a cloth of 1 m: its radius [m], its share of the cloths' mass, its speed [m/s]; and how many
+// radii before the eye it starts, so that it does not fill the picture.
+constexpr double kBallSize = 0.07, kBallMass = 0.1, kBallSpeed = 5, kBallStart = 6;
 // A gust: its speed [m/s], how it pushes a cloth that faces it [m/s^2], how long it blows [s].
 constexpr double kGustSpeed = 8, kGustPush = 30, kGustDuration = 0.8;
 
@@ -299,8 +300,8 @@ void Session::ShootBall(const Vec3& from, const Vec3& direction) {
     mass += cloth.width * cloth.height * cloth.density;
   }
   Ball ball;
-  ball.position = from;
   ball.radius = kBallSize * extent;
+  ball.position = from + UnitOr(direction, {0, 0, -1}) * (kBallStart * ball.radius);
   ball.mass = mass > 0 ? kBallMass * mass : 1;
   ball.velocity = UnitOr(direction, {0, 0, -1}) * (kBallSpeed * std::sqrt(extent));
   if (Check(ball)) return;
