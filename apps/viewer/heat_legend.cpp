@@ -9,7 +9,7 @@
 namespace percale::viewer {
 namespace {
 
-constexpr float kTop = 42, kLeft = 10, kWidth = 240, kBarHeight = 14;  // [screen unit at scale 1]
+constexpr float kTop = 64, kLeft = 10, kWidth = 240, kBarHeight = 14;  // [screen unit at scale 1]
 constexpr int kTicks = 5, kParts = 64;
 
 ImU32 ColorOf(const Rgb& color) {

@@ -265,18 +265,20 @@ class Viewer {
 
   void DrawPanels() {
     const float width = static_cast<float>(width_), height = static_cast<float>(height_);
+    const float pictureWidth = static_cast<float>(PictureWidth());
+    float free = height;  // Of the picture, above the time bar.
     if (state_.kept.panelsVisible) {
-      DrawStatusLine(session_, state_, static_cast<float>(PictureWidth()));
+      DrawStatusLine(session_, state_, pictureWidth);
       DrawPanelColumn(session_, state_, width, height);
-      const float bar = DrawTimeBar(session_, state_, static_cast<float>(PictureWidth()), height);
-      DrawMessages(session_, state_, static_cast<float>(PictureWidth()), height - bar);
+      free -= DrawTimeBar(session_, state_, pictureWidth, height);
+      DrawMessages(session_, state_, pictureWidth, free);
     }
-    DrawPlotsWindow(session_, state_, static_cast<float>(PictureWidth()), height);
+    DrawPlotsWindow(session_, state_, pictureWidth, free);
     DrawInspector(session_, state_, PictureWidth(), height_);
-    DrawConsole(session_, state_, static_cast<float>(PictureWidth()), height);
+    DrawConsole(session_, state_, pictureWidth, free);
     DrawHelp(session_, state_, width, height);
-    DrawNewShader(session_, state_, static_cast<float>(PictureWidth()), height);
-    DrawRecordingLight(session_, state_, static_cast<float>(PictureWidth()));
+    DrawNewShader(session_, state_, pictureWidth, height);
+    DrawRecordingLight(session_, state_, pictureWidth);
     DrawPalette(session_, state_, width, height);
   }
 
