@@ -17,14 +17,14 @@ const UniformValues& KeptUniforms::Of(const std::string& name, std::span<const S
   return shader.values;
 }
 
-void KeptUniforms::Set(const std::string& shader, const std::string& uniform, const UniformValue& value, double now) {
-  shaders_[shader].values[uniform] = value;
-  shaders_[shader].dirtySince = now;
-}
-
-void KeptUniforms::Clear(const std::string& shader, double now) {
-  shaders_[shader].values.clear();
-  shaders_[shader].dirtySince = now;
+void KeptUniforms::Set(const std::string& shader, const std::string& uniform, const std::optional<UniformValue>& value,
+                       double now) {
+  Shader& kept = shaders_[shader];
+  if (value)
+    kept.values[uniform] = *value;
+  else
+    kept.values.erase(uniform);
+  kept.dirtySince = now;
 }
 
 bool KeptUniforms::Changed(const std::string& name) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "apps/viewer/file_watch.h"
@@ -23,9 +24,8 @@ class KeptUniforms {
   const UniformValues& Of(const std::string& shader, std::span<const ShaderParameter> parameters);
   /// What is wrong with its file.
   const Diagnostics& Problems(const std::string& shader) { return shaders_[shader].problems; }
-  /// The user's choice. `now` counts seconds.
-  void Set(const std::string& shader, const std::string& uniform, const UniformValue& value, double now);
-  void Clear(const std::string& shader, double now);
+  /// The user's choice; nothing: the default. `now` counts seconds.
+  void Set(const std::string& shader, const std::string& uniform, const std::optional<UniformValue>& value, double now);
 
   /// Whether the user has edited the file of a shader; then Of reads it again.
   bool Changed(const std::string& shader);

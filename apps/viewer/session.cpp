@@ -231,6 +231,10 @@ std::uint64_t Session::Travel(const Change& change, bool forth) {
     LogTexture(0);
     return 0;
   }
+  if (!change.shader.empty()) {
+    ChooseValues(change.shader, forth ? change.valuesAfter : change.valuesBefore);
+    return 0;
+  }
   if (change.settings) {
     scene_ = forth ? change.after : change.before;
     AdoptLook();
@@ -498,21 +502,56 @@ UniformValue Session::Uniform(const ShaderParameter& parameter) const {
 }
 
 void Session::SetUniform(const ShaderParameter& parameter, const UniformValue& value) {
-  view_.uniforms[parameter.name] = value;
-  kept_.Set(view_.look.shader, parameter.name, value, Now());
+  const std::string path = InputSource(parameter) + " of " + view_.look.shader;
+  if (undo_.Merges(path)) {
+    undo_.Extend({{parameter.name, value}});
+  } else {
+    undo_.Push({.label = parameter.label,
+                .path = path,
+                .shader = view_.look.shader,
+                .valuesBefore = {{parameter.name, Chosen(parameter.name)}},
+                .valuesAfter = {{parameter.name, value}}});
+  }
+  ChooseValues(view_.look.shader, {{parameter.name, value}});
   messages_.Set(InputSource(parameter), {});
-  if (!log_.enabled()) return;
-  log_.Write(LogLine("uniform")
-                 .Text("shader", view_.look.shader)
-                 .Text("name", parameter.name)
-                 .Vector("value", {value[0], value[1], value[2]}));
 }
 
 void Session::ResetUniforms() {
-  kept_.Clear(view_.look.shader, Now());
-  if (view_.look.shader == givenShader_) givenShader_.clear();
-  view_.uniforms.clear();
-  if (log_.enabled()) log_.Write(LogLine("uniforms").Text("shader", view_.look.shader));
+  const std::string& shader = view_.look.shader;
+  if (log_.enabled()) log_.Write(LogLine("uniforms").Text("shader", shader));
+  Change change{.label = "Defaults of " + shader, .shader = shader};
+  UniformValues values = view_.uniforms;
+  values.merge(UniformValues(kept_.Of(shader, shaders_.Parameters(shader))));
+  for (const auto& [name, value] : values) {
+    change.valuesBefore[name] = value;
+    change.valuesAfter[name] = std::nullopt;
+  }
+  if (shader == givenShader_) givenShader_.clear();
+  if (values.empty()) return;
+  ChooseValues(shader, change.valuesAfter);
+  undo_.Push(std::move(change));
+}
+
+/// What was chosen for a parameter of the current shader; nothing: its default.
+std::optional<UniformValue> Session::Chosen(const std::string& uniform) const {
+  const auto found = view_.uniforms.find(uniform);
+  return found == view_.uniforms.end() ? std::nullopt : std::optional(found->second);
+}
+
+void Session::ChooseValues(const std::string& shader, const ShaderValues& values) {
+  for (const auto& [name, value] : values) {
+    kept_.Set(shader, name, value, Now());
+    if (shader != view_.look.shader) continue;  // It will have them when it is chosen again.
+    if (value)
+      view_.uniforms[name] = *value;
+    else
+      view_.uniforms.erase(name);
+    if (!log_.enabled()) continue;
+    LogLine line("uniform");
+    line.Text("shader", shader).Text("name", name);
+    if (value) line.Vector("value", {(*value)[0], (*value)[1], (*value)[2]});
+    log_.Write(line);
+  }
 }
 
 /// The values of the current shader: what came with it before what is kept.

@@ -196,6 +196,8 @@ class Session {
   std::uint64_t SendSettings(LogLine line);
   Command ApplyCommand(bool undoable) const;
   std::uint64_t SendHandles(bool undoable);
+  std::optional<UniformValue> Chosen(const std::string& uniform) const;
+  void ChooseValues(const std::string& shader, const ShaderValues& values);
   void AdoptSettings(Scene settings);
   void Run(bool running);
   /// Takes a change back, or does it again; returns the command whose state before it leads back, or 0.

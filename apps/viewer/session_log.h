@@ -29,7 +29,7 @@
 ///   budget   bytes, command: of history
 ///   undo     label, and redo: what the lines after it do
 ///   set      path ("/cloth/0/ks"), value, command (absent where the simulation has no part in it)
-///   uniform  shader, name, value (three numbers)
+///   uniform  shader, name, value (three numbers; without it, the default)
 ///   uniforms shader: all values are the shader's defaults again
 ///   shader   name: the shader that is drawn with from now on
 ///   texture  number (1 to 4), file: the shaders' texture from now on; empty: the project's own

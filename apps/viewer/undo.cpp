@@ -24,6 +24,10 @@ void UndoStack::Extend(const Scene& after) {
   done_.back().after = after;
 }
 
+void UndoStack::Extend(const ShaderValues& after) {
+  done_.back().valuesAfter = after;
+}
+
 void UndoStack::Undone(std::uint64_t command) {
   undone_.push_back(std::move(done_.back()));
   done_.pop_back();

@@ -5,12 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "percale/scene.h"
+#include "render/shader_library.h"
 
 namespace percale::viewer {
+
+/// Values of a shader's parameters, by the names of their uniforms; nothing stands for the default.
+using ShaderValues = std::map<std::string, std::optional<UniformValue>>;
 
 /// One thing that the user did. It changed the settings, or the state, or both.
 struct Change {
@@ -21,6 +27,8 @@ struct Change {
   bool settings = false;          ///< The settings differ.
   bool texture = false;           ///< Another file is the shaders' first texture; the settings do not differ.
   std::filesystem::path textureBefore = {}, textureAfter = {};
+  std::string shader = {};  ///< Its parameters have other values; the settings do not differ. Empty: none's.
+  ShaderValues valuesBefore = {}, valuesAfter = {};
 };
 
 class UndoStack {
@@ -36,6 +44,7 @@ class UndoStack {
   void Push(Change change);
   /// Extends the change on top.
   void Extend(const Scene& after);
+  void Extend(const ShaderValues& after);
 
   /// The change to take back, or to do again; null where there is none. Call Undone or Redone when it is done.
   const Change* ToUndo() const { return done_.empty() ? nullptr : &done_.back(); }

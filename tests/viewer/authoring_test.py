@@ -75,6 +75,13 @@ class Authoring(ViewerTest):
             viewer.click("button reset_uniforms")
             viewer.wait("uniforms", since, shader="Phong")
             wait_for("the file to go", lambda: not os.path.exists(kept))
+            # That can be undone, and done again.
+            since = viewer.key("ctrl+z", "undo")
+            viewer.wait("uniform", since, name="u_diffuse_on", value=[0, 0, 0])
+            wait_for("the file", lambda: os.path.exists(kept))
+            since = viewer.key("ctrl+y", "redo")
+            viewer.wait("uniform", since, name="u_diffuse_on")
+            wait_for("the file to go again", lambda: not os.path.exists(kept))
         self.assertEqual(plain, self.shot())
         # A file that is broken is told and not overwritten.
         self.write("Phong.json", "{ broken")
