@@ -34,6 +34,12 @@ bool ToggleOverlay(Session& session, bool Overlays::*shown) {
   return true;
 }
 
+bool ToggleHelp(Session& session, UiState& state) {
+  state.helpVisible = !state.helpVisible;
+  session.log().Write(LogLine("help").Flag("visible", state.helpVisible));
+  return true;
+}
+
 void LogInspector(Session& session, const UiState& state) {
   session.log().Write(LogLine("inspector").Flag("visible", state.inspectorVisible).Flag("held", state.inspectorHeld));
 }
@@ -246,14 +252,14 @@ constexpr Action kActions[] = {
      .run = [](Session& session, UiState& state) { session.ExportPlots(ShownFrames(session, state)); return true; }},
     {.name = "help", .category = "Window", .title = "Help", .help = "Help: keys and mouse",
      .key = Press(F1),
+     .run = [](Session& session, UiState& state) { return ToggleHelp(session, state); }},
+    {.name = "quit", .category = "Window", .title = "Quit", .help = "Quit; or close the help, where it is open",
+     .key = Press(Escape),
      .run = [](Session& session, UiState& state) {
-       state.helpVisible = !state.helpVisible;
-       session.log().Write(LogLine("help").Flag("visible", state.helpVisible));
+       if (state.helpVisible) return ToggleHelp(session, state);
+       state.quit = true;
        return true;
      }},
-    {.name = "quit", .category = "Window", .title = "Quit", .help = "Quit",
-     .key = Press(Escape),
-     .run = [](Session&, UiState& state) { state.quit = true; return true; }},
 };
 // clang-format on
 

@@ -93,6 +93,10 @@ class Actions(ViewerTest):
         viewer.settle()
 
     def prepare(self, viewer, name):
+        if name == "quit":  # Esc closes the help first.
+            since = viewer.mark()
+            viewer.xdotool("key", "Escape")
+            viewer.wait("help", since, visible=False)
         if name == "step_back":  # There is a past to go back to.
             viewer.step()
             viewer.step()
