@@ -23,6 +23,7 @@ double SquaredRatio(std::span<const Vec3> positions, std::span<const Vec3> rest,
   return atRest > 0 ? SquaredLength(positions[Index(spring.a)] - positions[Index(spring.b)]) / atRest : 1;
 }
 
+constexpr std::size_t kBitsPerSlot = 16;
 constexpr int kCellBits = 21;  // per axis: space repeats after 2^21 cells, which costs time alone
 
 std::uint64_t Cell(std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -31,6 +32,12 @@ std::uint64_t Cell(std::int64_t x, std::int64_t y, std::int64_t z) {
          (static_cast<std::uint64_t>(z) & mask) << (2 * kCellBits);
 }
 
+/// A box that has that cell.
+Box BoxOfCell(std::uint64_t cell) {
+  constexpr std::uint64_t mask = (std::uint64_t{1} << kCellBits) - 1;
+  const auto index = [&](int axis) { return static_cast<std::int64_t>(cell >> (axis * kCellBits) & mask); };
+  return {index(0), index(1), index(2)};
+}
 Box CellOf(const Vec3& p, double size) {
   return BoxOf(p, {size, size, size});
 }
@@ -172,9 +179,9 @@ VertexRef ContactFinder::Ref(std::int32_t point) const {
   return {cloth, point - firstPoint_[Index(cloth)]};
 }
 
-std::uint32_t ContactFinder::Slot(std::uint64_t cell) const {
-  const std::uint64_t mixed = cell * 0x9e3779b97f4a7c15u;  // the slots are a power of two
-  return static_cast<std::uint32_t>(mixed >> 32) & static_cast<std::uint32_t>(slotBegin_.size() - 2);
+/// The numbers of neighbouring cells, far from each other: their low bits choose a slot of a table.
+std::uint32_t ContactFinder::Mixed(std::uint64_t cell) {
+  return static_cast<std::uint32_t>(cell * 0x9e3779b97f4a7c15u >> 32);
 }
 
 /// Points sorted by the cell that they are in, cells as large as the greatest distance that counts.
@@ -187,20 +194,23 @@ void ContactFinder::FindPairs(std::span<const ContactCloth> cloths) {
   std::size_t slots = 64;
   while (slots < 2 * positions_.size()) slots *= 2;
   slotBegin_.assign(slots + 1, 0);
-  taken_.assign(slots / 64, 0);
+  const auto slotMask = static_cast<std::uint32_t>(slots - 1);
+  // Most cells around a point are empty. With so many bits one in 32 of these is taken for another.
+  const auto bitMask = static_cast<std::uint32_t>(kBitsPerSlot * slots - 1);
+  taken_.assign(kBitsPerSlot * slots / 64, 0);
   cells_.resize(positions_.size());
   members_.resize(positions_.size());
   for (std::size_t p = 0; p < positions_.size(); ++p) {
     const Box at = CellOf(positions_[p], size);
     cells_[p] = Cell(at.x, at.y, at.z);
-    const std::uint32_t slot = Slot(cells_[p]);
-    ++slotBegin_[slot];
-    taken_[slot / 64] |= std::uint64_t{1} << slot % 64;
+    const std::uint32_t mixed = Mixed(cells_[p]), bit = mixed & bitMask;
+    ++slotBegin_[mixed & slotMask];
+    taken_[bit / 64] |= std::uint64_t{1} << bit % 64;
   }
   std::int32_t begin = 0;
   for (std::int32_t& slot : slotBegin_) begin += std::exchange(slot, begin);
   for (std::size_t p = 0; p < positions_.size(); ++p) {
-    members_[Index(slotBegin_[Slot(cells_[p])]++)] = static_cast<std::int32_t>(p);
+    members_[Index(slotBegin_[Mixed(cells_[p]) & slotMask]++)] = static_cast<std::int32_t>(p);
   }
   // Each slot's entry is where the next one begins by now.
   const auto slotMembers = [&](std::uint32_t slot) {
@@ -210,14 +220,13 @@ void ContactFinder::FindPairs(std::span<const ContactCloth> cloths) {
 
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     for (std::int32_t p = firstPoint_[c]; p < firstPoint_[c + 1]; ++p) {
-      const Vec3& x = positions_[Index(p)];
-      const Box at = CellOf(x, size);
+      const Box at = BoxOfCell(cells_[Index(p)]);
       for (const Box& step : kHalfAround) {
         const std::uint64_t cell = Cell(at.x + step.x, at.y + step.y, at.z + step.z);
         const bool own = &step == kHalfAround;
-        const std::uint32_t slot = Slot(cell);
-        if (!(taken_[slot / 64] >> slot % 64 & 1)) continue;
-        for (const std::int32_t q : slotMembers(slot)) {
+        const std::uint32_t mixed = Mixed(cell), bit = mixed & bitMask;
+        if (!(taken_[bit / 64] >> bit % 64 & 1)) continue;
+        for (const std::int32_t q : slotMembers(mixed & slotMask)) {
           if (cells_[Index(q)] != cell || (own && q <= p)) continue;
           std::size_t d = c;  // the cloth of q
           while (q < firstPoint_[d]) --d;

@@ -104,13 +104,13 @@ class ContactFinder {
  private:
   VertexRef Ref(std::int32_t point) const;
   void FindPairs(std::span<const ContactCloth> cloths);
-  std::uint32_t Slot(std::uint64_t cell) const;
+  static std::uint32_t Mixed(std::uint64_t cell);
 
   std::vector<Vec3> positions_;           // of all cloths' points
   std::vector<Contact> contacts_;         // per point
   std::vector<std::int32_t> firstPoint_;  // per cloth, and one more
   std::vector<std::uint64_t> cells_;      // per point: the box of space that it is in
-  std::vector<std::uint64_t> taken_;      // a bit per slot, set where it has members: in the cache, unlike those
+  std::vector<std::uint64_t> taken_;      // bits by mixed cell, set where there are points: in the cache, unlike those
   std::vector<std::int32_t> slotBegin_;   // per slot of the table of cells: its first entry in members_
   std::vector<std::int32_t> members_;     // points by slot, ascending
   std::vector<ContactPair> pairs_;
