@@ -132,10 +132,8 @@ class Line {
 
   JsonDocument Parse(std::string& text) const {
     Result<JsonDocument> doc = JsonDocument::Parse(std::move(text), file_);
-    if (doc) return std::move(*doc);
-    Diagnostics errors = doc.diagnostics();
-    for (Diagnostic& error : errors) error.place.line = number_;
-    throw BadLine{std::move(errors)};
+    if (!doc) Fail("expected a line of a session log, one JSON object, got something else");
+    return std::move(*doc);
   }
 
   const std::string& file_;
