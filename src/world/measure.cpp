@@ -32,6 +32,10 @@ std::uint64_t Cell(std::int64_t x, std::int64_t y, std::int64_t z) {
          (static_cast<std::uint64_t>(z) & mask) << (2 * kCellBits);
 }
 
+/// The numbers of neighbouring cells, far from each other: their low bits choose a slot of a table.
+std::uint32_t Mixed(std::uint64_t cell) {
+  return static_cast<std::uint32_t>(cell * 0x9e3779b97f4a7c15u >> 32);
+}
 /// A box that has that cell.
 Box BoxOfCell(std::uint64_t cell) {
   constexpr std::uint64_t mask = (std::uint64_t{1} << kCellBits) - 1;
@@ -179,11 +183,6 @@ VertexRef ContactFinder::Ref(std::int32_t point) const {
   return {cloth, point - firstPoint_[Index(cloth)]};
 }
 
-/// The numbers of neighbouring cells, far from each other: their low bits choose a slot of a table.
-std::uint32_t ContactFinder::Mixed(std::uint64_t cell) {
-  return static_cast<std::uint32_t>(cell * 0x9e3779b97f4a7c15u >> 32);
-}
-
 /// Points sorted by the cell that they are in, cells as large as the greatest distance that counts.
 void ContactFinder::FindPairs(std::span<const ContactCloth> cloths) {
   double thickest = 0;
@@ -220,9 +219,16 @@ void ContactFinder::FindPairs(std::span<const ContactCloth> cloths) {
 
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     for (std::int32_t p = firstPoint_[c]; p < firstPoint_[c + 1]; ++p) {
+      // Each coordinate of the cells around, in its place in their numbers.
       const Box at = BoxOfCell(cells_[Index(p)]);
+      std::uint64_t x[3], y[3], z[3];
+      for (int k = -1; k <= 1; ++k) {
+        x[k + 1] = Cell(at.x + k, 0, 0);
+        y[k + 1] = Cell(0, at.y + k, 0);
+        z[k + 1] = Cell(0, 0, at.z + k);
+      }
       for (const Box& step : kHalfAround) {
-        const std::uint64_t cell = Cell(at.x + step.x, at.y + step.y, at.z + step.z);
+        const std::uint64_t cell = x[step.x + 1] | y[step.y + 1] | z[step.z + 1];
         const bool own = &step == kHalfAround;
         const std::uint32_t mixed = Mixed(cell), bit = mixed & bitMask;
         if (!(taken_[bit / 64] >> bit % 64 & 1)) continue;

@@ -104,7 +104,6 @@ class ContactFinder {
  private:
   VertexRef Ref(std::int32_t point) const;
   void FindPairs(std::span<const ContactCloth> cloths);
-  static std::uint32_t Mixed(std::uint64_t cell);
 
   std::vector<Vec3> positions_;           // of all cloths' points
   std::vector<Contact> contacts_;         // per point
