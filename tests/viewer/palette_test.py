@@ -94,6 +94,7 @@ class Palette(ViewerTest):
             viewer.xdotool("key", "Up")
             viewer.xdotool("key", "Up")
             last = viewer.wait("palette", since, where=lambda event: not event["selected"].startswith("shader N"))
+            viewer.xdotool("sleep", "0.5")  # The list has scrolled: its boxes are told when they stand still.
             viewer.click("palette/shader Phong")
             viewer.wait("shader", since, name="Phong")
             viewer.wait("palette", since, visible=False)
