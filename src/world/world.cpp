@@ -250,7 +250,7 @@ bool World::Apply(Scene scene) {
 }
 
 void World::SetHandles(std::vector<Handle> handles) {
-  for (const Handle& handle : handles) {
+  for ([[maybe_unused]] const Handle& handle : handles) {
     assert(handle.cloth >= 0 && handle.cloth < ClothCount() && handle.vertex >= 0);
     assert(handle.vertex < impl_->cloths[static_cast<std::size_t>(handle.cloth)].model.PointCount());
     assert(!Check(handle));
