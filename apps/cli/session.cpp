@@ -62,10 +62,8 @@ int ApplyPresets(const Options& options, Session& session) {
     if (!givesWay.empty()) {
       std::string paths;
       for (const PresetAssignment& way : givesWay) paths += (paths.empty() ? "" : ", ") + way.path;
-      Diagnostic note = MakeWarning("--preset " + ShellWord(name) + ": the scene file states " + paths +
-                                    " itself, which wins; with --set preset=" + ShellWord(name) + " the preset does");
-      note.severity = Severity::Note;
-      PrintDiagnostics({note});
+      PrintDiagnostics({MakeNote("--preset " + ShellWord(name) + ": the scene file states " + paths +
+                                 " itself, which wins; with --set preset=" + ShellWord(name) + " the preset does")});
     }
     session.presets.push_back(preset);
   }

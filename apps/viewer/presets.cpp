@@ -16,12 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSource = "preset";
 
-Diagnostic Note(const std::string& text) {
-  Diagnostic note = MakeWarning(text);
-  note.severity = Severity::Note;
-  return note;
-}
-
 /// "pinned2-1", or the next number that is free.
 fs::path FreeName(const fs::path& folder, const std::string& front) {
   std::error_code error;
@@ -51,7 +45,7 @@ void ApplyPreset(const fs::path& file, Session& session) {
   }
   const std::string what =
       preset->description.empty() ? std::to_string(assignments.size()) + " values set" : preset->description;
-  session.messages().Set(kSource, {Note("preset " + preset->name + ": " + what)});
+  session.messages().Set(kSource, {MakeNote("preset " + preset->name + ": " + what)});
 }
 
 bool SavePreset(const std::string& name, const fs::path& folder, Session& session) {
@@ -83,8 +77,8 @@ bool SavePreset(const std::string& name, const fs::path& folder, Session& sessio
   if (const Status written = created->Write(text); !written) return refuse(written.diagnostics());
   if (const Status committed = created->Commit(); !committed) return refuse(committed.diagnostics());
   session.log().Write(LogLine("preset_saved").Text("file", PathText(path)));
-  session.messages().Set(kSource, {Note("preset " + PathText(path.stem()) + " saved as " + PathText(path) + ": " +
-                                        std::to_string(saved->values.size()) + " values")});
+  session.messages().Set(kSource, {MakeNote("preset " + PathText(path.stem()) + " saved as " + PathText(path) + ": " +
+                                            std::to_string(saved->values.size()) + " values")});
   return true;
 }
 

@@ -133,8 +133,7 @@ JobReport Recorder::Encode() {
   char text[160];
   std::snprintf(text, sizeof text, "%.1f s recorded, %d pictures%s", film->frames / kPicturesPerSecond, film->frames,
                 film->isFolder ? ", numbered PNG files in a folder" : "");
-  Diagnostic note = MakeError(PathText(film->path), text);
-  note.severity = Severity::Note;
+  Diagnostic note = MakeNote(PathText(film->path), text);
   if (dropped > 0) {
     note.severity = Severity::Warning;
     note.message += "; " + std::to_string(dropped) + " came faster than they could be encoded and are missing";

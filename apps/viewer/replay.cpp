@@ -347,9 +347,7 @@ Result<ReplayResult> Replay(const std::filesystem::path& file, const ReplayOptio
     return bad.diagnostics;
   }
   if (!player.started()) return MakeError(name, "expected a session log, got a file without a whole line");
-  Diagnostic warning = MakeError(name, "the log breaks off: it lacks the line \"exit\"");
-  warning.severity = Severity::Warning;
-  return {std::move(result), {warning}};
+  return {std::move(result), {MakeWarning(name, "the log breaks off: it lacks the line \"exit\"")}};
 }
 
 }  // namespace percale::viewer

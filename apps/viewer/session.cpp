@@ -1,10 +1,10 @@
 #include "apps/viewer/session.h"
 
 #include <algorithm>
-#include <chrono>
 #include <system_error>
 #include <utility>
 
+#include "apps/viewer/clock.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "render/shader_text.h"
@@ -73,10 +73,6 @@ bool SameSettings(const Scene& a, const Scene& b) {
 bool SameView(const OrbitCamera& a, const OrbitCamera& b) {
   return a.target() == b.target() && a.distance() == b.distance() && a.azimuth() == b.azimuth() &&
          a.elevation() == b.elevation();
-}
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 /// Messages that concern the whole session are for the terminal as well.
@@ -279,21 +275,11 @@ std::uint64_t Session::SendHandles(bool undoable) {
   return Send({.kind = kind, .undoable = undoable, .handles = handles_});
 }
 
-bool Session::IsPinned(int cloth, int vertex) const {
-  const ClothSettings& sheet = scene_.cloths[static_cast<std::size_t>(cloth)];
-  const GridPoint point{vertex % sheet.numWidthPoints, vertex / sheet.numWidthPoints};
-  return std::find(sheet.pinned.begin(), sheet.pinned.end(), point) != sheet.pinned.end();
-}
-
 void Session::TogglePin(int cloth, int vertex) {
   const ClothSettings& sheet = scene_.cloths[static_cast<std::size_t>(cloth)];
   const GridPoint point{vertex % sheet.numWidthPoints, vertex / sheet.numWidthPoints};
   std::vector<GridPoint> pinned = sheet.pinned;
-  const bool isPinned = IsPinned(cloth, vertex);
-  if (isPinned)
-    pinned.erase(std::remove(pinned.begin(), pinned.end(), point), pinned.end());
-  else
-    pinned.push_back(point);
+  if (std::erase(pinned, point) == 0) pinned.push_back(point);
   SetParameter(*FindParameter("cloth", "pinned"), cloth, pinned);
 }
 
@@ -497,8 +483,7 @@ std::span<const ShaderParameter> Session::ShaderParameters() {
 }
 
 UniformValue Session::Uniform(const ShaderParameter& parameter) const {
-  const auto found = view_.uniforms.find(parameter.name);
-  return found == view_.uniforms.end() ? parameter.defaultValue : found->second;
+  return Chosen(parameter.name).value_or(parameter.defaultValue);
 }
 
 void Session::SetUniform(const ShaderParameter& parameter, const UniformValue& value) {
@@ -570,10 +555,9 @@ Status Session::CreateShader(const std::string& name) {
   SetShader(name);
   std::error_code error;
   const std::filesystem::path whole = std::filesystem::absolute(*file, error);
-  Diagnostic note = MakeError(PathText(error ? *file : whole.lexically_normal()),
-                              "is the new shader: edit it in any editor; each time it is saved it shows here at once");
-  note.severity = Severity::Note;
-  messages_.Set("new shader", {note});
+  messages_.Set("new shader",
+                {MakeNote(PathText(error ? *file : whole.lexically_normal()),
+                          "is the new shader: edit it in any editor; each time it is saved it shows here at once")});
   return Ok();
 }
 
@@ -830,9 +814,8 @@ void Session::ReadSnapshot(double now) {
   messages_.Set("divergence", problems);
   if (snapshot_.history.full && !toldFull_) {
     toldFull_ = true;
-    Diagnostic note = MakeError("the history has filled the memory it may take: from now on the oldest frames go");
-    note.severity = Severity::Note;
-    messages_.Set("history budget", {note});
+    messages_.Set("history budget",
+                  {MakeNote("the history has filled the memory it may take: from now on the oldest frames go")});
   }
   stateUnlogged_ = true;
   if (!snapshot_.executed.empty() || now >= lastState_ + kStatePeriod) LogState(now);

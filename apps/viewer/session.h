@@ -85,7 +85,6 @@ class Session {
   bool gripping() const { return !handles_.empty(); }
   /// Pins a vertex where it is, or lets it go.
   void TogglePin(int cloth, int vertex);
-  bool IsPinned(int cloth, int vertex) const;
   /// A ball from before a point in a direction; its size, mass and speed suit the scene.
   void ShootBall(const Vec3& from, const Vec3& direction);
   /// A second of wind in a direction, strong enough for the cloth's weight.

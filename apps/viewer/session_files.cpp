@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/viewer/clock.h"
 #include "apps/viewer/session.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
@@ -18,10 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 constexpr std::string_view kFrameMark = "-frame";
 /// A picture that is opened runs to its frame in pieces of so many frames, so that it can be watched.
 constexpr int kFramesAtOnce = 5;
@@ -29,9 +26,7 @@ constexpr int kFramesAtOnce = 5;
 constexpr int kPngLevel = 6;
 
 Diagnostic Note(const fs::path& file, std::string message) {
-  Diagnostic note = MakeError(PathText(file), std::move(message));
-  note.severity = Severity::Note;
-  return note;
+  return MakeNote(PathText(file), std::move(message));
 }
 
 bool AllDigits(std::string_view text) {

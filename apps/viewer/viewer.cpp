@@ -3,7 +3,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "apps/viewer/actions.h"
+#include "apps/viewer/clock.h"
 #include "apps/viewer/hand.h"
 #include "apps/viewer/panels.h"
 #include "apps/viewer/session.h"
@@ -52,10 +52,6 @@ constexpr const char* kSettingsSource = "kept settings";
 volatile std::sig_atomic_t interrupted = 0;
 extern "C" void OnInterrupt(int) {
   interrupted = 1;
-}
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 /// The window with all that is in it.

@@ -42,6 +42,9 @@ bool HasErrors(const Diagnostics& diagnostics);
 Diagnostic MakeError(std::string message);
 Diagnostic MakeError(std::string file, std::string message);
 Diagnostic MakeWarning(std::string message);
+Diagnostic MakeWarning(std::string file, std::string message);
+Diagnostic MakeNote(std::string message);
+Diagnostic MakeNote(std::string file, std::string message);
 
 /// A value, or the errors that explain why there is none. Warnings may stand beside a value.
 template <class T>

@@ -63,13 +63,22 @@ bool HasErrors(const Diagnostics& diagnostics) {
 Diagnostic MakeError(std::string message) {
   return MakeError({}, std::move(message));
 }
-
 Diagnostic MakeError(std::string file, std::string message) {
   return {Severity::Error, {std::move(file), 0, 0}, std::move(message), {}, 0};
 }
 
 Diagnostic MakeWarning(std::string message) {
-  return {Severity::Warning, {}, std::move(message), {}, 0};
+  return MakeWarning({}, std::move(message));
+}
+Diagnostic MakeWarning(std::string file, std::string message) {
+  return {Severity::Warning, {std::move(file), 0, 0}, std::move(message), {}, 0};
+}
+
+Diagnostic MakeNote(std::string message) {
+  return MakeNote({}, std::move(message));
+}
+Diagnostic MakeNote(std::string file, std::string message) {
+  return {Severity::Note, {std::move(file), 0, 0}, std::move(message), {}, 0};
 }
 
 }  // namespace percale
