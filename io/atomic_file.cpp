@@ -240,4 +240,17 @@ Status AtomicFile::CommitAs(const fs::path& target) {
   return Commit();
 }
 
+std::filesystem::path NumberedName(const std::filesystem::path& stem, const std::string& ending) {
+  for (int n = 1;; ++n) {
+    std::filesystem::path plain = stem;
+    plain += "-" + std::to_string(n);
+    std::filesystem::path file = plain;
+    file += ending;
+    std::error_code ignored;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(file, ignored)) &&
+        !std::filesystem::exists(std::filesystem::symlink_status(plain, ignored)))
+      return file;
+  }
+}
+
 }  // namespace percale

@@ -1,7 +1,6 @@
 #include "apps/viewer/background.h"
 
 #include <exception>
-#include <system_error>
 #include <utility>
 
 namespace percale::viewer {
@@ -59,19 +58,6 @@ void Background::Loop() {
     }
     changed_.notify_all();
     if (wake_) wake_();
-  }
-}
-
-std::filesystem::path NumberedName(const std::filesystem::path& stem, const std::string& ending) {
-  for (int n = 1;; ++n) {
-    std::filesystem::path plain = stem;
-    plain += "-" + std::to_string(n);
-    std::filesystem::path file = plain;
-    file += ending;
-    std::error_code ignored;
-    if (!std::filesystem::exists(std::filesystem::symlink_status(file, ignored)) &&
-        !std::filesystem::exists(std::filesystem::symlink_status(plain, ignored)))
-      return file;
   }
 }
 

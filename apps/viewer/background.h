@@ -49,8 +49,4 @@ class Background {
   std::thread thread_;
 };
 
-/// STEM-1.ENDING, STEM-2.ENDING, ...: the first that does not exist. Nor does STEM-N, which a film takes
-/// that becomes a folder of pictures.
-std::filesystem::path NumberedName(const std::filesystem::path& stem, const std::string& ending);
-
 }  // namespace percale::viewer

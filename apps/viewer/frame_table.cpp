@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "io/atomic_file.h"
@@ -28,12 +27,9 @@ std::span<const FrameRow> FrameTable::rows() const {
 }
 
 Result<std::filesystem::path> ExportFrames(std::span<const FrameRow> rows, const std::filesystem::path& sceneFile) {
-  std::filesystem::path file;
-  std::error_code ignored;
-  for (int n = 1; file.empty() || std::filesystem::exists(file, ignored); ++n) {
-    file = sceneFile.stem();
-    file += "-plots-" + std::to_string(n) + ".csv";
-  }
+  std::filesystem::path stem = sceneFile.stem();
+  stem += "-plots";
+  const std::filesystem::path file = NumberedName(stem, ".csv");
   Result<AtomicFile> table = AtomicFile::Create(file);
   if (!table) return table.diagnostics();
   std::string text = ReportTableHeader();

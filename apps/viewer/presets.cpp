@@ -16,15 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSource = "preset";
 
-/// "pinned2-1", or the next number that is free.
-fs::path FreeName(const fs::path& folder, const std::string& front) {
-  std::error_code error;
-  for (int i = 1;; ++i) {
-    const fs::path file = folder / TextPath(front + "-" + std::to_string(i) + ".json");
-    if (!fs::exists(file, error)) return file;
-  }
-}
-
 }  // namespace
 
 void ApplyPreset(const fs::path& file, Session& session) {
@@ -69,7 +60,7 @@ bool SavePreset(const std::string& name, const fs::path& folder, Session& sessio
   std::error_code error;
   fs::create_directories(folder, error);  // What fails here fails below, with its place.
   const fs::path path =
-      name.empty() ? FreeName(folder, PathText(session.sceneFile().stem())) : folder / TextPath(name + ".json");
+      name.empty() ? NumberedName(folder / session.sceneFile().stem(), ".json") : folder / TextPath(name + ".json");
   if (fs::exists(path, error))
     return refuse({MakeError(PathText(path), "there is a preset of this name; choose another, or delete the file")});
   Result<AtomicFile> created = AtomicFile::Create(path);
