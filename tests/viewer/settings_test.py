@@ -115,6 +115,7 @@ class Settings(ViewerTest):
             viewer.key("p", "pause")
             since = viewer.key("F1", "help")
             viewer.wait("hint", since, text="Ctrl+K: Find any command")
+            viewer.key("Escape", "quit")  # The help first.
             self.quit(viewer)
         with self.open(scene("pinned2")) as viewer:
             viewer.wait("hint", text="Ctrl+K: Find any command")
