@@ -10,6 +10,7 @@ g++|run|the C++ compiler
 cmake|run|sets the build up
 ninja-build|run|runs the build
 libtbb-dev|run|threads
+libeigen3-dev|run|sparse direct solves, for the reference that the fabric solver is held against
 nlohmann-json3-dev|run|reads scene files
 libcli11-dev|run|reads the command line
 libpng-dev|run|reads and writes pictures
