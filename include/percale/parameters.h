@@ -29,8 +29,9 @@ enum class ValueKind {
 
 using Value = std::variant<double, bool, std::string, Vec3, std::vector<GridPoint>>;
 
-/// What a change of the parameter does to a running World.
+/// What a change of the parameter does to a running World, from the least to the most.
 enum class Effect {
+  View,     ///< Nothing: only pictures of it change.
   Live,     ///< Acts at once, the state is kept.
   Rebuild,  ///< The cloth is another one: it starts anew.
 };
@@ -74,6 +75,18 @@ std::span<const ParameterGroup> ParameterGroups();
 /// The group or parameter of that name, or null.
 const ParameterGroup* FindGroup(std::string_view name);
 const Parameter* FindParameter(std::string_view group, std::string_view name);
+
+/// A value in which two scenes differ.
+struct Difference {
+  const Parameter* parameter = nullptr;
+  std::size_t index = 0;  ///< Of the object in its group.
+};
+
+/// Every value in which two scenes differ, in the order of Parameters(). Of an object that only one of them has, all.
+std::vector<Difference> Differences(const Scene& a, const Scene& b);
+
+/// The greatest effect of a change of settings; nothing where there is none.
+std::optional<Effect> EffectOf(const Scene& before, const Scene& after);
 
 /// The value that an object of the group has when nothing is said.
 Value DefaultValue(const Parameter& parameter);

@@ -52,7 +52,7 @@ struct Facts {
   bool required = false;
   double typicalMin = 0, typicalMax = 0;
   bool logarithmic = false;
-  Effect effect = Effect::Live;
+  std::optional<Effect> effect = {};  ///< Nothing: the group's.
   std::string_view help = {};
 };
 
@@ -120,62 +120,52 @@ constexpr ValueKind KindOf() {
   }
 }
 
-/// The row of the table for `Owner.*Field`; its kind and choices follow from the member's type.
+/// Makes the row of the table for `Owner.*Field`; its kind and choices follow from the member's type.
 template <auto Owner, auto Field>
-Parameter Row(std::string_view group, const Facts& f) {
-  using T = std::remove_cvref_t<decltype(Access<Owner, Field>(std::declval<Scene&>(), 0))>;
-  std::span<const std::string_view> choices;
-  if constexpr (std::is_enum_v<T>) choices = NamesOf(T{});
-  return {group,
-          f.name,
-          f.label,
-          KindOf<T>(),
-          f.unit,
-          f.min,
-          f.max,
-          f.minExclusive,
-          f.required,
-          f.typicalMin,
-          f.typicalMax,
-          f.logarithmic,
-          f.help,
-          choices,
-          f.effect,
-          &Get<Owner, Field>,
-          &Set<Owner, Field>};
-}
+struct RowOf {
+  std::string_view group;
+  Effect effect = Effect::Live;
+
+  Parameter operator()(const Facts& f) const {
+    using T = std::remove_cvref_t<decltype(Access<Owner, Field>(std::declval<Scene&>(), 0))>;
+    std::span<const std::string_view> choices;
+    if constexpr (std::is_enum_v<T>) choices = NamesOf(T{});
+    return {group,
+            f.name,
+            f.label,
+            KindOf<T>(),
+            f.unit,
+            f.min,
+            f.max,
+            f.minExclusive,
+            f.required,
+            f.typicalMin,
+            f.typicalMax,
+            f.logarithmic,
+            f.help,
+            choices,
+            f.effect.value_or(effect),
+            &Get<Owner, Field>,
+            &Set<Owner, Field>};
+  }
+};
+
 template <auto Field>
-Parameter Cloth(const Facts& facts) {
-  return Row<&Scene::cloths, Field>("cloth", facts);
-}
+constexpr RowOf<&Scene::cloths, Field> Cloth{"cloth"};
 template <auto Field>
-Parameter Sphere(const Facts& facts) {
-  return Row<&Scene::spheres, Field>("sphere", facts);
-}
+constexpr RowOf<&Scene::spheres, Field> Sphere{"sphere"};
 template <auto Field>
-Parameter Plane(const Facts& facts) {
-  return Row<&Scene::planes, Field>("plane", facts);
-}
+constexpr RowOf<&Scene::planes, Field> Plane{"plane"};
 template <auto Field>
-Parameter Motion(const Facts& facts) {
-  return Row<&Scene::pinMotions, Field>("pin_motion", facts);
-}
+constexpr RowOf<&Scene::pinMotions, Field> Motion{"pin_motion"};
 template <auto Field>
-Parameter Wind(const Facts& facts) {
-  return Row<&Scene::wind, Field>("wind", facts);
-}
+constexpr RowOf<&Scene::wind, Field> Wind{"wind"};
 template <auto Field>
-Parameter Simulation(const Facts& facts) {
-  return Row<&Scene::simulation, Field>("simulation", facts);
-}
+constexpr RowOf<&Scene::simulation, Field> Simulation{"simulation"};
 template <auto Field>
-Parameter Camera(const Facts& facts) {
-  return Row<&Scene::camera, Field>("camera", facts);
-}
+constexpr RowOf<&Scene::camera, Field> Camera{"camera", Effect::View};
 template <auto Field>
-Parameter Look(const Facts& facts) {
-  return Row<&Scene::look, Field>("look", facts);
-}
+constexpr RowOf<&Scene::look, Field> Look{"look", Effect::View};
 
 // clang-format off
 std::vector<Parameter> MakeTable() {
@@ -274,7 +264,7 @@ std::vector<Parameter> MakeTable() {
       .max = kLatest, .minExclusive = true,
       .typicalMin = 0.1, .typicalMax = 10, .help = "Time from gust to gust."}),
 
-    Simulation<&S::engine>({.name = "engine", .label = "Engine",
+    Simulation<&S::engine>({.name = "engine", .label = "Engine", .effect = kRebuild,
       .help = "springs: the classic simulator of masses and springs."}),
     Simulation<&S::framesPerSecond>({.name = "frames_per_second", .label = "Frames/s", .unit = "1/s", .min = 1,
       .max = kMostSteps,
@@ -523,6 +513,28 @@ const Parameter* FindParameter(std::string_view group, std::string_view name) {
     if (parameter.group == group && parameter.name == name) return &parameter;
   }
   return nullptr;
+}
+
+std::vector<Difference> Differences(const Scene& a, const Scene& b) {
+  std::vector<Difference> differences;
+  for (const Parameter& parameter : Table()) {
+    const ParameterGroup& group = *FindGroup(parameter.group);
+    const std::size_t inA = group.count(a), inB = group.count(b);
+    for (std::size_t i = 0; i < std::max(inA, inB); ++i) {
+      const bool inBoth = i < std::min(inA, inB);
+      if (!inBoth || parameter.get(a, i) != parameter.get(b, i)) differences.push_back({&parameter, i});
+    }
+  }
+  return differences;
+}
+
+std::optional<Effect> EffectOf(const Scene& before, const Scene& after) {
+  std::optional<Effect> greatest;
+  if (before.planesFirst != after.planesFirst) greatest = Effect::Live;
+  for (const Difference& difference : Differences(before, after)) {
+    greatest = std::max(greatest, std::optional(difference.parameter->effect));
+  }
+  return greatest;
 }
 
 Value DefaultValue(const Parameter& parameter) {

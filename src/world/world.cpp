@@ -42,16 +42,7 @@ class StageClock {
 
 /// Whether two scenes have the same cloths, apart from settings that act at once.
 bool SameCloths(const Scene& a, const Scene& b) {
-  if (a.simulation.engine != b.simulation.engine) return false;
-  for (const Parameter& parameter : Parameters()) {
-    if (parameter.effect != Effect::Rebuild) continue;
-    const std::size_t count = FindGroup(parameter.group)->count(a);
-    if (count != FindGroup(parameter.group)->count(b)) return false;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (parameter.get(a, i) != parameter.get(b, i)) return false;
-    }
-  }
-  return true;
+  return EffectOf(a, b) != Effect::Rebuild;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -105,8 +106,36 @@ TEST_CASE("Only what keeps the grid and its start the same acts on a running clo
   const std::set<std::string_view> rebuild = {
       "width", "height", "num_width_points", "num_height_points", "orientation", "origin", "seed"};
   for (const Parameter& p : Parameters()) {
-    const bool expected = p.group == "cloth" && rebuild.count(p.name) > 0;
+    const bool expected = (p.group == "cloth" && rebuild.count(p.name) > 0) || p.name == "engine";
     CHECK_MESSAGE((p.effect == Effect::Rebuild) == expected, p.name);
+    const bool isView = p.group == "camera" || p.group == "look";
+    CHECK_MESSAGE((p.effect == Effect::View) == isView, p.name);
+  }
+}
+
+TEST_CASE("What differs between two scenes is told value by value, and has the greatest effect of them") {
+  const Scene scene = OneOfEach();
+  CHECK(Differences(scene, scene).empty());
+  CHECK(EffectOf(scene, scene) == std::nullopt);
+  for (const Parameter& p : Parameters()) {
+    CAPTURE(p.name);
+    Scene changed = scene;
+    p.set(changed, 0, Another(p, p.get(scene, 0)));
+    const std::vector<Difference> differences = Differences(scene, changed);
+    if (p.get(changed, 0) == p.get(scene, 0)) continue;  // It has one value only.
+    REQUIRE(differences.size() == 1);
+    CHECK(differences[0].parameter == &p);
+    CHECK(differences[0].index == 0);
+    CHECK(EffectOf(scene, changed) == p.effect);
+    changed.look.color.x += 0.125;
+    CHECK(EffectOf(scene, changed) == p.effect);
+  }
+  Scene more = scene;
+  more.spheres.push_back({});
+  const auto ofSpheres = [](const Difference& d) { return d.parameter->group == "sphere" && d.index == 1; };
+  for (const std::vector<Difference>& differences : {Differences(scene, more), Differences(more, scene)}) {
+    CHECK_FALSE(differences.empty());
+    CHECK(std::all_of(differences.begin(), differences.end(), ofSpheres));
   }
 }
 
