@@ -56,20 +56,6 @@ bool SameGroup(std::string_view group, const Scene& a, const Scene& b) {
   return true;
 }
 
-/// Whether two scenes say the same to the simulation: all but look and camera.
-bool SameSettings(const Scene& a, const Scene& b) {
-  for (const ParameterGroup& group : ParameterGroups()) {
-    if (group.count(a) != group.count(b)) return false;
-  }
-  for (const Parameter& parameter : Parameters()) {
-    if (parameter.group == "look" || parameter.group == "camera") continue;
-    for (std::size_t i = 0; i < FindGroup(parameter.group)->count(a); ++i) {
-      if (parameter.get(a, i) != parameter.get(b, i)) return false;
-    }
-  }
-  return true;
-}
-
 bool SameView(const OrbitCamera& a, const OrbitCamera& b) {
   return a.target() == b.target() && a.distance() == b.distance() && a.azimuth() == b.azimuth() &&
          a.elevation() == b.elevation();
@@ -231,8 +217,11 @@ std::uint64_t Session::Travel(const Change& change, bool forth) {
     ChooseValues(change.shader, forth ? change.valuesAfter : change.valuesBefore);
     return 0;
   }
-  if (change.settings) {
-    scene_ = forth ? change.after : change.before;
+  const Scene& from = forth ? change.before : change.after;
+  const Scene& to = forth ? change.after : change.before;
+  const std::optional<Effect> effect = EffectOf(from, to);
+  if (effect) {
+    scene_ = WithChange(scene_, from, to);
     AdoptLook();
     CheckSettings();
   }
@@ -240,7 +229,8 @@ std::uint64_t Session::Travel(const Change& change, bool forth) {
     wantsRunning_ = wantsLooping_ = false;
     return Send({.kind = Command::Kind::Restore, .undoable = true, .before = change.command});
   }
-  SendSettings(LogLine("settings"));
+  // What is only seen is no reason to forget the frames after this one.
+  if (effect > Effect::View) SendSettings(LogLine("settings"));
   return 0;
 }
 
@@ -335,7 +325,6 @@ bool Session::SetParameter(const Parameter& parameter, int index, const Value& v
     const std::string path = Path(parameter, index);
     const bool merges = undo_.Merges(path);
     Change change{.label = std::string(parameter.label), .path = path, .before = scene_, .after = changed};
-    change.settings = true;
     scene_ = std::move(changed);
     const bool isView = parameter.group == "look" || parameter.group == "camera";
     const bool undoable = parameter.effect == Effect::Rebuild && !merges;
@@ -368,7 +357,6 @@ Status Session::SetScene(const std::string& label, Scene settings) {
   const Diagnostics checked = CheckScene(settings);
   if (HasErrors(checked)) return checked;
   Change change{.label = label, .before = scene_, .after = settings};
-  change.settings = true;
   undo_.Push(std::move(change));
   scene_ = std::move(settings);
   AdoptLook();
@@ -394,7 +382,7 @@ std::uint64_t Session::SendSettings(LogLine line) {
 void Session::AdoptSettings(Scene settings) {
   settings.look = scene_.look;
   settings.camera = scene_.camera;
-  if (SameSettings(settings, scene_)) return;
+  if (EffectOf(scene_, settings) <= Effect::View) return;
   scene_ = std::move(settings);
   if (log_.enabled()) log_.Write(LogLine("settings").Config(scene_));
   CheckSettings();

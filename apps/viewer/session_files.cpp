@@ -226,7 +226,7 @@ bool Session::LoadNewestState() {
     return false;
   }
   auto state = std::make_shared<const WorldState>(std::move(*loaded));
-  Change change{.label = "Load a checkpoint", .before = scene_, .after = *state->scene, .settings = true};
+  Change change{.label = "Load a checkpoint", .before = scene_, .after = *state->scene};
   change.command = SendState(newest, state, true);
   scene_ = *state->scene;
   AdoptLook();

@@ -1,8 +1,21 @@
 #include "apps/viewer/undo.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "percale/parameters.h"
+
 namespace percale::viewer {
+
+Scene WithChange(const Scene& scene, const Scene& from, const Scene& to) {
+  Scene changed = scene;
+  for (const auto& [parameter, index] : Differences(from, to)) {
+    const ParameterGroup& group = *FindGroup(parameter->group);
+    if (index >= std::min(group.count(to), group.count(changed))) return to;
+    parameter->set(changed, index, parameter->get(to, index));
+  }
+  return HasErrors(CheckScene(changed)) ? to : changed;
+}
 
 void UndoStack::Hold(bool held) {
   if (!held) begun_ = false;

@@ -24,12 +24,15 @@ struct Change {
   std::string path = {};          ///< Of the parameter, where it is one.
   Scene before = {}, after = {};  ///< The settings.
   std::uint64_t command = 0;      ///< The command that was executed for it and whose state before it is kept, or 0.
-  bool settings = false;          ///< The settings differ.
   bool texture = false;           ///< Another file is the shaders' first texture; the settings do not differ.
   std::filesystem::path textureBefore = {}, textureAfter = {};
   std::string shader = {};  ///< Its parameters have other values; the settings do not differ. Empty: none's.
   ShaderValues valuesBefore = {}, valuesAfter = {};
 };
+
+/// A scene with what differs between `from` and `to` as it is in `to`, and all else as it was; or `to` itself where
+/// that would not be a scene, as another grid under the same pins.
+Scene WithChange(const Scene& scene, const Scene& from, const Scene& to);
 
 class UndoStack {
  public:

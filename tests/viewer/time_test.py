@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Time in the window: the bar with the frames that are kept, and the memory they take."""
 
+import subprocess
 import unittest
 
-from window import ViewerTest, scene
+from window import PERCALE, ViewerTest, scene, state_hash
 
 
 class Time(ViewerTest):
@@ -59,6 +60,32 @@ class Time(ViewerTest):
             viewer.click("button pause")
             viewer.wait("run", since, running=False)
             self.assertEqual(viewer.count("message"), 0, viewer.stderr())
+
+    def test_undo_of_what_is_only_seen_keeps_the_frames_after_it(self):
+        with self.viewer("-f", scene("pinned2")) as viewer:
+            for _ in range(2):
+                viewer.step()
+            viewer.type_number("cloth.ks", "1234")
+            for _ in range(2):
+                last = viewer.step()
+            viewer.type_number("look.normal_scaling", "3")
+            since = viewer.key("Home", "first_frame")
+            viewer.wait("state", since, frame=0, hash=viewer.start["hash"])
+            for key, action in (("ctrl+z", "undo"), ("ctrl+y", "redo"), ("ctrl+z", "undo")):
+                viewer.key(key, action)
+            viewer.settle()
+            viewer.key("End", "last_frame")
+            viewer.wait("state", since, frame=last["frame"], hash=last["hash"])
+            # The settings are still those of the frame, not those of the change.
+            viewer.key("Home", "first_frame")
+            viewer.key("ctrl+y", "redo")
+            viewer.settle()
+            viewer.type_number("cloth.damping", "0.5")
+            self.assertEqual(viewer.step()["hash"], state_hash(scene("pinned2"), 1, "--set", "cloth.damping=0.5"))
+            viewer.xdotool("key", "Escape")
+            self.assertEqual(viewer.ended(), 0)
+            replayed = subprocess.run([PERCALE, "replay", viewer.log], capture_output=True, text=True, timeout=300)
+            self.assertEqual(replayed.returncode, 0, replayed.stderr)
 
     def test_the_memory_is_bounded_and_its_end_is_told_once(self):
         with self.viewer("-f", scene("pinned2"), "--history", "1") as viewer:

@@ -15,11 +15,7 @@ Scene WithKs(double ks) {
 }
 
 Change KsChange(double before, double after) {
-  return {.label = "Spring constant",
-          .path = "/cloth/ks",
-          .before = WithKs(before),
-          .after = WithKs(after),
-          .settings = true};
+  return {.label = "Spring constant", .path = "/cloth/ks", .before = WithKs(before), .after = WithKs(after)};
 }
 
 }  // namespace
@@ -79,4 +75,22 @@ TEST_CASE("the oldest of too many changes are forgotten") {
     stack.Undone(0);
   }
   CHECK(count == UndoStack::kMost);
+}
+
+TEST_CASE("a change is made to what it changed, whatever else is other by now") {
+  Scene now = WithKs(2);
+  now.cloths[0].damping = 0.7;
+  now.look.shader = "Phong";
+  const Scene back = WithChange(now, WithKs(2), WithKs(1));
+  CHECK(back.cloths[0].ks == 1);
+  CHECK(back.cloths[0].damping == 0.7);
+  CHECK(back.look.shader == "Phong");
+
+  // A pin that the grid does not have any more; a cloth that is not there any more.
+  Scene pinned = WithKs(2);
+  pinned.cloths[0].pinned = {{49, 49}};
+  now.cloths[0].numWidthPoints = 10;
+  CHECK(WithChange(now, WithKs(2), pinned).cloths[0].numWidthPoints == pinned.cloths[0].numWidthPoints);
+  now.cloths.clear();
+  CHECK(WithChange(now, WithKs(2), WithKs(1)).cloths.size() == 1);
 }
