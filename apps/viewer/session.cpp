@@ -39,6 +39,29 @@ std::string InputSource(const ShaderParameter& parameter) {
   return "input " + parameter.name;
 }
 
+/// Of all settings at once.
+LogLine SettingsLine(const Scene& scene) {
+  return LogLine("settings").Config(scene);
+}
+
+/// One for each value that differs.
+std::vector<LogLine> ValueLines(const Scene& before, const Scene& after) {
+  std::vector<LogLine> lines;
+  for (const auto& [parameter, index] : Differences(before, after)) {
+    LogLine& line = lines.emplace_back("set");
+    line.Text("path", Path(*parameter, static_cast<int>(index)));
+    line.Json("value", FormatValue(parameter->get(after, index)));
+  }
+  return lines;
+}
+
+std::string FirstError(const Diagnostics& diagnostics) {
+  for (const Diagnostic& d : diagnostics) {
+    if (d.severity == Severity::Error) return d.message;
+  }
+  return {};
+}
+
 Diagnostic Refusal(std::string_view label, const std::string& why) {
   return MakeError(std::string(label) + ": " + why + "; the old value stays");
 }
@@ -48,12 +71,11 @@ std::string DrawingSource(const std::string& file) {
   return "drawing: " + file;
 }
 
-/// Whether two scenes have the same values in all parameters of a group that is a single object.
+/// Whether two scenes have the same values in all parameters of a group.
 bool SameGroup(std::string_view group, const Scene& a, const Scene& b) {
-  for (const Parameter& parameter : Parameters()) {
-    if (parameter.group == group && parameter.get(a, 0) != parameter.get(b, 0)) return false;
-  }
-  return true;
+  const std::vector<Difference> differences = Differences(a, b);
+  return std::none_of(differences.begin(), differences.end(),
+                      [&](const Difference& d) { return d.parameter->group == group; });
 }
 
 bool SameView(const OrbitCamera& a, const OrbitCamera& b) {
@@ -119,12 +141,12 @@ bool Session::looping() const {
 
 std::uint64_t Session::Send(Command command) {
   LogLine line = DescribeCommand(command);
-  return Send(std::move(command), std::move(line));
+  return Send(std::move(command), {std::move(line)});
 }
 
-std::uint64_t Session::Send(Command command, LogLine line) {
+std::uint64_t Session::Send(Command command, std::vector<LogLine> lines) {
   lastSent_ = simulation_.Send(std::move(command));
-  if (log_.enabled()) log_.Write(line.Number("command", static_cast<double>(lastSent_)));
+  for (LogLine& line : lines) log_.Write(line.Number("command", static_cast<double>(lastSent_)));
   return lastSent_;
 }
 
@@ -219,19 +241,15 @@ std::uint64_t Session::Travel(const Change& change, bool forth) {
   }
   const Scene& from = forth ? change.before : change.after;
   const Scene& to = forth ? change.after : change.before;
-  const std::optional<Effect> effect = EffectOf(from, to);
-  if (effect) {
-    scene_ = WithChange(scene_, from, to);
-    AdoptLook();
-    CheckSettings();
+  if (const std::optional<Effect> effect = EffectOf(from, to)) {
+    Scene settings = WithChange(scene_, from, to);
+    LogLine line = SettingsLine(settings);
+    // With a state come its settings.
+    AdoptSettings(std::move(settings), change.command == 0 ? *effect : Effect::View, {std::move(line)});
   }
-  if (change.command != 0) {
-    wantsRunning_ = wantsLooping_ = false;
-    return Send({.kind = Command::Kind::Restore, .undoable = true, .before = change.command});
-  }
-  // What is only seen is no reason to forget the frames after this one.
-  if (effect > Effect::View) SendSettings(LogLine("settings"));
-  return 0;
+  if (change.command == 0) return 0;
+  wantsRunning_ = wantsLooping_ = false;
+  return Send({.kind = Command::Kind::Restore, .undoable = true, .before = change.command});
 }
 
 // The hand.
@@ -303,89 +321,77 @@ void Session::BlowGust(const Vec3& direction) {
 // Settings.
 
 bool Session::SetParameter(const Parameter& parameter, int index, const Value& value) {
-  const auto refuse = [&](const std::string& why) {
-    Refuse(parameter, index, why);
+  if (const auto problem = CheckValue(parameter, value)) {
+    Refuse(parameter, index, *problem);
     return false;
-  };
-  if (const auto problem = CheckValue(parameter, value)) return refuse(*problem);
+  }
   const ParameterGroup& group = *FindGroup(parameter.group);
-  const std::size_t count = group.count(scene_);
   Scene changed = scene_;
-  std::vector<int> set;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (group.isArray && index != kAll && static_cast<std::size_t>(index) != i) continue;
-    if (parameter.get(scene_, i) == value) continue;
-    parameter.set(changed, i, value);
-    set.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < group.count(scene_); ++i) {
+    if (!group.isArray || index == kAll || static_cast<std::size_t>(index) == i) parameter.set(changed, i, value);
   }
-  if (!set.empty()) {
-    for (const Diagnostic& d : CheckScene(changed)) {
-      if (d.severity == Severity::Error) return refuse(d.message);
-    }
-    const std::string path = Path(parameter, index);
-    const bool merges = undo_.Merges(path);
-    Change change{.label = std::string(parameter.label), .path = path, .before = scene_, .after = changed};
-    scene_ = std::move(changed);
-    const bool isView = parameter.group == "look" || parameter.group == "camera";
-    const bool undoable = parameter.effect == Effect::Rebuild && !merges;
-    std::uint64_t command = 0;
-    if (isView) {
-      AdoptLook();
-    } else {
-      command = lastSent_ = lastApply_ = simulation_.Send(ApplyCommand(undoable));
-      CheckSettings();
-    }
-    if (undoable) change.command = command;
-    if (merges)
-      undo_.Extend(scene_);
-    else
-      undo_.Push(std::move(change));
-    for (const int i : set) {
-      if (!log_.enabled()) break;
-      LogLine line("set");
-      line.Text("path", Path(parameter, i)).Json("value", FormatValue(value));
-      if (undoable) line.Flag("undoable", true);
-      if (command) line.Number("command", static_cast<double>(command));
-      log_.Write(line);
-    }
-  }
-  messages_.Set(InputSource(parameter, index), {});
-  return true;
+  const Status set = ChangeSettings(std::string(parameter.label), Path(parameter, index), std::move(changed));
+  if (set)
+    messages_.Set(InputSource(parameter, index), {});
+  else
+    Refuse(parameter, index, FirstError(set.diagnostics()));
+  return set.ok();
 }
 
 Status Session::SetScene(const std::string& label, Scene settings) {
-  const Diagnostics checked = CheckScene(settings);
-  if (HasErrors(checked)) return checked;
-  Change change{.label = label, .before = scene_, .after = settings};
-  undo_.Push(std::move(change));
-  scene_ = std::move(settings);
-  AdoptLook();
-  SendSettings(LogLine("settings"));
-  CheckSettings();
-  return Ok();
+  return ChangeSettings(label, {}, std::move(settings));
 }
 
 void Session::Refuse(const Parameter& parameter, int index, const std::string& why) {
   messages_.Set(InputSource(parameter, index), {Refusal(parameter.label, why)});
 }
 
-Command Session::ApplyCommand(bool undoable) const {
-  return {.kind = Command::Kind::Apply, .undoable = undoable, .scene = std::make_unique<Scene>(scene_)};
+Status Session::ChangeSettings(const std::string& label, const std::string& path, Scene settings) {
+  const std::optional<Effect> effect = EffectOf(scene_, settings);
+  if (!effect) return Ok();
+  if (const Diagnostics checked = CheckScene(settings); HasErrors(checked)) return checked;
+  const bool merges = undo_.Merges(path);
+  // Of changes that are merged, the state before the first leads back.
+  const bool undoable = effect == Effect::Rebuild && !merges;
+  Change change{.label = label, .path = path, .before = scene_, .after = settings};
+  std::vector<LogLine> lines = path.empty() ? std::vector{SettingsLine(settings)} : ValueLines(scene_, settings);
+  const std::uint64_t command = AdoptSettings(std::move(settings), *effect, std::move(lines), undoable);
+  if (undoable) change.command = command;
+  if (merges)
+    undo_.Extend(scene_);
+  else
+    undo_.Push(std::move(change));
+  return Ok();
 }
 
-std::uint64_t Session::SendSettings(LogLine line) {
-  line.Config(scene_);
-  return lastApply_ = Send(ApplyCommand(false), std::move(line));
+std::uint64_t Session::AdoptSettings(Scene settings, Effect effect, std::vector<LogLine> lines, bool undoable) {
+  scene_ = std::move(settings);
+  AdoptLook();
+  std::uint64_t command = 0;
+  if (effect == Effect::View) {
+    for (const LogLine& line : lines) log_.Write(line);
+  } else {
+    command = SendSettings(std::move(lines), undoable);
+  }
+  CheckSettings();
+  return command;
+}
+
+std::uint64_t Session::SendSettings(std::vector<LogLine> lines, bool undoable) {
+  if (undoable) {
+    for (LogLine& line : lines) line.Flag("undoable", true);
+  }
+  Command apply{.kind = Command::Kind::Apply, .undoable = undoable, .scene = std::make_unique<Scene>(scene_)};
+  return lastApply_ = Send(std::move(apply), std::move(lines));
 }
 
 /// The settings that a state has brought along. What is seen stays as the user wants it.
-void Session::AdoptSettings(Scene settings) {
+void Session::FollowSettings(Scene settings) {
   settings.look = scene_.look;
   settings.camera = scene_.camera;
-  if (EffectOf(scene_, settings) <= Effect::View) return;
-  scene_ = std::move(settings);
-  if (log_.enabled()) log_.Write(LogLine("settings").Config(scene_));
-  CheckSettings();
+  if (!EffectOf(scene_, settings)) return;
+  LogLine line = SettingsLine(settings);
+  AdoptSettings(std::move(settings), Effect::View, {std::move(line)});
 }
 
 /// Warnings about the settings as they are now. Those that a slider has left behind are not kept.
@@ -627,15 +633,13 @@ void Session::ReloadScene() {
   bool statesShader = false;
   if (!Load(sceneFile_, "scene", loaded, statesShader)) return;
   // The file's values count, but what the user chose to see stays unless the file has changed it.
-  const LookSettings look = scene_.look;
   const bool sameLook = SameGroup("look", loaded, fileScene_), sameCamera = SameGroup("camera", loaded, fileScene_);
   fileScene_ = loaded;
-  scene_ = std::move(loaded);
-  if (sameLook) scene_.look = look;
-  AdoptLook();
-  SendSettings(LogLine("reload").Text("what", "scene").Text("file", PathText(sceneFile_)));
+  if (sameLook) loaded.look = scene_.look;
+  const Effect effect = EffectOf(scene_, loaded).value_or(Effect::View);
+  LogLine line = LogLine("reload").Text("what", "scene").Text("file", PathText(sceneFile_)).Config(loaded);
+  AdoptSettings(std::move(loaded), effect, {std::move(line)});
   if (!cameraMoved_ || !sameCamera) ResetCamera();
-  CheckSettings();
 }
 
 void Session::Reload() {
@@ -680,7 +684,7 @@ bool Session::OpenScene(const std::filesystem::path& file) {
   AdoptLook();
   messages_.Set("scene", {});
   Run(false);
-  SendSettings(LogLine("open").Text("scene", PathText(file)));
+  SendSettings({LogLine("open").Text("scene", PathText(file)).Config(scene_)});
   Send({.kind = Command::Kind::Reset});
   handles_.clear();
   undo_.Clear();
@@ -737,7 +741,7 @@ bool Session::Update(double now) {
       CheckSettings();
       RefreshShaderMessages();
       if (options_.state) SendState(sceneFile_, options_.state, false);
-      if (options_.state && !options_.set.empty()) SendSettings(LogLine("settings"));
+      if (options_.state && !options_.set.empty()) SendSettings({SettingsLine(scene_)});
       if (!options_.state) SendFrames(options_.frame);
     }
     nextLook_ = now + kLookPeriod;
@@ -782,11 +786,11 @@ void Session::ReadSnapshot(double now) {
                      .Hash("hash", done.hash)
                      .Flag("kept", done.stateKept));
     }
-    if (done.scene && done.command > lastApply_) AdoptSettings(*done.scene);
+    if (done.scene && done.command > lastApply_) FollowSettings(*done.scene);
     if (done.state) KeepState(done.command, done.state);
     if (!done.failure.empty()) {
       messages_.Set("history", {MakeError(done.failure)});
-      SendSettings(LogLine("settings"));  // Those that the panels show.
+      SendSettings({SettingsLine(scene_)});  // Those that the panels show.
     } else if (done.state || done.scene) {
       messages_.Set("history", {});
     }

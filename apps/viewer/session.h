@@ -189,15 +189,20 @@ class Session {
   void LogState(double now);
   /// Sends a command, and logs it in a line of its own.
   std::uint64_t Send(Command command);
-  /// The same with another line.
-  std::uint64_t Send(Command command, LogLine line);
-  /// Sends the settings as they are; the line gets them too.
-  std::uint64_t SendSettings(LogLine line);
-  Command ApplyCommand(bool undoable) const;
+  /// The same with other lines.
+  std::uint64_t Send(Command command, std::vector<LogLine> lines);
+  /// The one way in which the user changes settings: as a change that can be undone, and that is merged with the one
+  /// before it while what `path` names is held. Keeps the state where the cloth is to start anew.
+  Status ChangeSettings(const std::string& label, const std::string& path, Scene settings);
+  /// The one way to other settings: draws with them, logs `lines`, and sends them unless they have an effect on the
+  /// view alone, or the simulation has them already. Returns the number of the command, or 0.
+  std::uint64_t AdoptSettings(Scene settings, Effect effect, std::vector<LogLine> lines, bool undoable = false);
+  void FollowSettings(Scene settings);
+  /// Sends the settings as they are.
+  std::uint64_t SendSettings(std::vector<LogLine> lines, bool undoable = false);
   std::uint64_t SendHandles(bool undoable);
   std::optional<UniformValue> Chosen(const std::string& uniform) const;
   void ChooseValues(const std::string& shader, const ShaderValues& values);
-  void AdoptSettings(Scene settings);
   void Run(bool running);
   /// Takes a change back, or does it again; returns the command whose state before it leads back, or 0.
   std::uint64_t Travel(const Change& change, bool forth);

@@ -190,7 +190,7 @@ std::uint64_t Session::SendState(const fs::path& file, std::shared_ptr<const Wor
   line.Text("file", PathText(Whole(file))).Config(*command.state->scene);
   wantsRunning_ = wantsLooping_ = false;
   handles_.clear();
-  return Send(std::move(command), std::move(line));
+  return Send(std::move(command), {std::move(line)});
 }
 
 /// From the start to a frame.
@@ -228,9 +228,7 @@ bool Session::LoadNewestState() {
   auto state = std::make_shared<const WorldState>(std::move(*loaded));
   Change change{.label = "Load a checkpoint", .before = scene_, .after = *state->scene};
   change.command = SendState(newest, state, true);
-  scene_ = *state->scene;
-  AdoptLook();
-  CheckSettings();
+  AdoptSettings(*state->scene, Effect::View, {});
   undo_.Push(std::move(change));
   messages_.Set("open", {Note(Whole(newest), "frame " + std::to_string(state->report.frame) + "; Ctrl+Z goes back")});
   return true;
@@ -278,7 +276,7 @@ bool Session::OpenFile(const fs::path& file) {
     SendState(file, std::move(opened.state), false);
   } else {
     Run(false);
-    SendSettings(LogLine("open").Text("scene", PathText(file)));
+    SendSettings({LogLine("open").Text("scene", PathText(file)).Config(scene_)});
     Send({.kind = Command::Kind::Reset});
     SendFrames(opened.frame);
   }

@@ -14,7 +14,8 @@
 ///   loop     command: the history is shown again and again
 ///   step     frames, command
 ///   reset    command
-///   settings config (a scene), command: all settings at once
+///   settings config (a scene), command (absent where the simulation has them already, or no part in what is
+///            other): all settings at once
 ///   handles  handles (grips on the cloth, each with cloth, vertex, target [m], radius [m], frequency
 ///            [Hz]), command: they take the place of those there were
 ///   place    handles, command: the cloth is put there, while time stands
@@ -43,7 +44,7 @@
 ///            and ten times per second while running.
 ///   message  severity, source, text, and file, line, column where there is a place
 ///   mended   source: what messages of that source complained of is over
-///   reload   what ("scene", "shaders", "texture", "uniforms"), file
+///   reload   what ("scene", "shaders", "texture", "uniforms"), file; for a scene config and command, as settings
 ///   open     scene: another scene file
 ///   heat_map quantity ("off", "stretch", ...), fixed, and low, high where the range is fixed
 ///   overlays normals, pins, contacts, boxes: whether each is shown

@@ -4,10 +4,11 @@
 import glob
 import json
 import os
+import subprocess
 import tempfile
 import unittest
 
-from window import ROOT, ViewerTest, scene
+from window import PERCALE, ROOT, ViewerTest, scene
 
 
 class Palette(ViewerTest):
@@ -133,6 +134,17 @@ class Presets(ViewerTest):
         self.addCleanup(folder.cleanup)
         self.config = folder.name
 
+    def write(self, name, text):
+        os.makedirs(os.path.join(self.config, "presets"))
+        with open(os.path.join(self.config, "presets", name + ".json"), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def apply(self, viewer, name):
+        since = viewer.mark()
+        viewer.choose("preset " + name, "preset " + name)
+        viewer.xdotool("key", "Return")
+        return since
+
     def open(self):
         return self.viewer(scene("sphere"), environment={"PERCALE_CONFIG_DIR": self.config})
 
@@ -166,14 +178,48 @@ class Presets(ViewerTest):
             viewer.click("button save_preset")
             self.assertEqual(os.path.basename(viewer.wait("preset_saved", since)["file"]), "sphere-1.json")
 
-    def test_a_broken_one_is_told_with_its_place(self):
-        os.makedirs(os.path.join(self.config, "presets"))
-        with open(os.path.join(self.config, "presets", "bad.json"), "w", encoding="utf-8") as file:
-            file.write('{"set": {\n "cloth.kss": 5}}')
+    def test_one_that_makes_another_cloth_is_taken_back_to_the_bit(self):
+        self.write("coarse", '{"set": {"cloth.num_width_points": 20, "cloth.num_height_points": 20, "cloth.ks": 900, '
+                             '"look.color": [0, 0, 1]}}')
         with self.open() as viewer:
-            since = viewer.mark()
-            viewer.choose("preset bad", "preset bad")
-            viewer.xdotool("key", "Return")
+            for _ in range(3):
+                before = viewer.step()
+            since = self.apply(viewer, "coarse")
+            settings = viewer.wait("settings", since)
+            self.assertTrue(settings["undoable"])
+            self.assertFalse(viewer.wait("done", since, command=settings["command"])["kept"])
+            after = viewer.step()
+            self.assertEqual(after["frame"], 1)
+            for key, action, state in (("ctrl+z", "undo", before), ("ctrl+y", "redo", after), ("ctrl+z", "undo", before)):
+                viewer.key(key, action)
+                viewer.settle()
+                self.assertEqual((viewer.state()["frame"], viewer.state()["hash"]), (state["frame"], state["hash"]))
+            # Settings and all: what is set from here on is set for the cloth that is back.
+            viewer.type_number("cloth.damping", "0.5")
+            end = viewer.step()
+            self.assertEqual(end["frame"], 4)
+            self.assertEqual(viewer.count("message", severity="error"), 0, viewer.stderr())
+            viewer.xdotool("key", "Escape")
+            self.assertEqual(viewer.ended(), 0)
+            replayed = subprocess.run([PERCALE, "replay", viewer.log], capture_output=True, text=True, timeout=300)
+            self.assertEqual(replayed.returncode, 0, replayed.stderr)
+            self.assertIn("state   " + end["hash"], replayed.stdout)
+
+    def test_one_that_is_only_seen_keeps_the_frames_that_follow(self):
+        self.write("blue", '{"set": {"look.color": [0, 0, 1]}}')
+        with self.open() as viewer:
+            for _ in range(2):
+                last = viewer.step()
+            viewer.key("Home", "first_frame")
+            since = self.apply(viewer, "blue")
+            self.assertNotIn("command", viewer.wait("settings", since))
+            viewer.key("End", "last_frame")
+            viewer.wait("state", since, frame=2, hash=last["hash"])
+
+    def test_a_broken_one_is_told_with_its_place(self):
+        self.write("bad", '{"set": {\n "cloth.kss": 5}}')
+        with self.open() as viewer:
+            since = self.apply(viewer, "bad")
             message = viewer.wait("message", since, severity="error")
             self.assertTrue(message["file"].endswith("bad.json"))
             self.assertEqual(message["line"], 2)

@@ -1,7 +1,11 @@
 #!/usr/bin/env python3
 """Time in the window: the bar with the frames that are kept, and the memory they take."""
 
+import json
+import os
+import shutil
 import subprocess
+import tempfile
 import unittest
 
 from window import PERCALE, ViewerTest, scene, state_hash
@@ -86,6 +90,24 @@ class Time(ViewerTest):
             self.assertEqual(viewer.ended(), 0)
             replayed = subprocess.run([PERCALE, "replay", viewer.log], capture_output=True, text=True, timeout=300)
             self.assertEqual(replayed.returncode, 0, replayed.stderr)
+
+    def test_a_scene_file_that_is_saved_again_keeps_the_frames_after_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            name = os.path.join(folder, "pinned2.json")
+            shutil.copy(scene("pinned2"), name)
+            with open(name, encoding="utf-8") as file:
+                settings = json.load(file)
+            with self.viewer("-f", name) as viewer:
+                for _ in range(2):
+                    last = viewer.step()
+                since = viewer.key("Home", "first_frame")
+                viewer.settle()
+                settings["look"] = {"color": [0, 0, 1]}
+                with open(name, "w", encoding="utf-8") as file:
+                    json.dump(settings, file)
+                self.assertNotIn("command", viewer.wait("reload", since, what="scene"))
+                viewer.key("End", "last_frame")
+                viewer.wait("state", since, frame=2, hash=last["hash"])
 
     def test_the_memory_is_bounded_and_its_end_is_told_once(self):
         with self.viewer("-f", scene("pinned2"), "--history", "1") as viewer:
