@@ -30,7 +30,7 @@ constexpr Key Press(SpecialKey special) {
 bool ToggleOverlay(Session& session, bool Overlays::*shown) {
   Overlays overlays = session.view().overlays;
   overlays.*shown = !(overlays.*shown);
-  session.SetOverlays(overlays);
+  session.liveView().SetOverlays(overlays);
   return true;
 }
 
@@ -60,31 +60,31 @@ void MoveKeyboard(UiState& state) {
 constexpr Action kActions[] = {
     {.name = "pause", .category = "Simulation", .title = "Run or pause", .help = "Run or pause the simulation",
      .key = Typed('p'),
-     .run = [](Session& session, UiState&) { session.TogglePause(); return true; }},
+     .run = [](Session& session, UiState&) { session.playback().TogglePause(); return true; }},
     {.name = "step", .category = "Simulation", .title = "One frame", .help = "One frame, while paused",
      .key = Typed('n'), .repeats = true,
-     .enabled = [](const Session& session, const UiState&) { return !session.running(); },
-     .run = [](Session& session, UiState&) { return session.StepOneFrame(); }},
+     .enabled = [](const Session& session, const UiState&) { return !session.playback().running(); },
+     .run = [](Session& session, UiState&) { return session.playback().StepOneFrame(); }},
     {.name = "reset", .category = "Simulation", .title = "Reset the cloth", .help = "Cloth back to its start",
      .key = Typed('r'),
      .run = [](Session& session, UiState&) { session.ResetCloth(); return true; }},
     {.name = "step_back", .category = "Simulation", .title = "One frame back", .help = "One frame back in the history",
      .key = Typed(','), .repeats = true,
-     .run = [](Session& session, UiState&) { return session.StepBack(); }},
+     .run = [](Session& session, UiState&) { return session.playback().StepBack(); }},
     {.name = "step_forward", .category = "Simulation", .title = "One frame forth",
      .help = "One frame forth; after the last of the history, a new one",
      .key = Typed('.'), .repeats = true,
-     .run = [](Session& session, UiState&) { return session.StepForward(); }},
+     .run = [](Session& session, UiState&) { return session.playback().StepForward(); }},
     {.name = "first_frame", .category = "Simulation", .title = "First frame", .help = "First frame of the history",
      .key = Press(Home),
-     .run = [](Session& session, UiState&) { return session.Seek(session.snapshot().history.firstFrame); }},
+     .run = [](Session& session, UiState&) { return session.playback().Seek(session.snapshot().history.firstFrame); }},
     {.name = "last_frame", .category = "Simulation", .title = "Last frame", .help = "Last frame of the history",
      .key = Press(End),
-     .run = [](Session& session, UiState&) { return session.Seek(session.snapshot().history.lastFrame); }},
+     .run = [](Session& session, UiState&) { return session.playback().Seek(session.snapshot().history.lastFrame); }},
     {.name = "loop", .category = "Simulation", .title = "Loop the history",
      .help = "Show the history again and again, or stop",
      .key = Typed('l'),
-     .run = [](Session& session, UiState&) { return session.ToggleLoop(); }},
+     .run = [](Session& session, UiState&) { return session.playback().ToggleLoop(); }},
     {.name = "more_history", .category = "Simulation", .title = "More memory for the history",
      .help = "Twice the memory for the history, or 64 MB where it is off",
      .run = [](Session& session, UiState&) {
@@ -123,7 +123,7 @@ constexpr Action kActions[] = {
 
     {.name = "reset_camera", .category = "View", .title = "Reset the camera", .help = "Camera back to its start",
      .key = Typed(' '),
-     .run = [](Session& session, UiState&) { session.ResetCamera(); return true; }},
+     .run = [](Session& session, UiState&) { session.liveView().ResetCamera(session.scene()); return true; }},
     {.name = "previous_shader", .category = "View", .title = "Previous shader", .help = "Previous shader",
      .key = Typed('['), .repeats = true,
      .run = [](Session& session, UiState&) { session.CycleShader(-1); return true; }},
@@ -132,13 +132,13 @@ constexpr Action kActions[] = {
      .run = [](Session& session, UiState&) { session.CycleShader(1); return true; }},
     {.name = "wireframe", .category = "View", .title = "Wireframe", .help = "Springs over any shader",
      .key = Typed('w'),
-     .run = [](Session& session, UiState&) { session.ToggleWireframe(); return true; }},
+     .run = [](Session& session, UiState&) { session.liveView().ToggleWireframe(); return true; }},
     {.name = "heat_map", .category = "View", .title = "Heat map",
      .help = "Next heat map: stretch, compression, speed, curvature, contact, off",
      .key = Typed('t'), .repeats = true,
      .run = [](Session& session, UiState&) {
        const int now = static_cast<int>(session.view().heatMap.quantity);
-       session.SetHeatMap({static_cast<Quantity>((now + 1) % kQuantities), {}});
+       session.liveView().SetHeatMap({static_cast<Quantity>((now + 1) % kQuantities), {}});
        return true;
      }},
     {.name = "normals", .category = "View", .title = "Normals", .help = "Normals of the vertices",
@@ -173,8 +173,8 @@ constexpr Action kActions[] = {
      .run = [](Session&, UiState& state) { state.newShader.emplace(); return true; }},
     {.name = "reset_uniforms", .category = "View", .title = "Reset the shader's values",
      .help = "The shader's parameters back to their defaults",
-     .enabled = [](const Session& session, const UiState&) { return session.HasOwnUniforms(); },
-     .run = [](Session& session, UiState&) { session.ResetUniforms(); return true; }},
+     .enabled = [](const Session& session, const UiState&) { return session.liveView().HasOwnUniforms(); },
+     .run = [](Session& session, UiState&) { session.liveView().ResetUniforms(); return true; }},
 
     {.name = "previous_scene", .category = "Scene", .title = "Previous scene",
      .help = "Previous scene file of the folder",

@@ -13,10 +13,10 @@ void DrawAppearancePanel(Session& session, UiState& state) {
   ParameterRow(session, state, "look", "height_scaling");
   ParameterRow(session, state, "look", "tangents");
   // Setting one does not change the shader, so the parameters stay where they are.
-  for (const ShaderParameter& parameter : session.ShaderParameters()) UniformRow(session, state, parameter);
+  for (const ShaderParameter& parameter : session.liveView().ShaderParameters()) UniformRow(session, state, parameter);
   if (ImGui::Button("New shader")) RunAction(FindAction("new_shader"), session, state);
   Control(session, state, "button new_shader", "Makes a shader from a template that explains itself");
-  if (!session.HasOwnUniforms()) return;
+  if (!session.liveView().HasOwnUniforms()) return;
   ImGui::SameLine();
   if (ImGui::Button("Reset to defaults")) RunAction(FindAction("reset_uniforms"), session, state);
   Control(session, state, "button reset_uniforms",

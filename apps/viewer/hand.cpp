@@ -109,7 +109,7 @@ void Hand::Take(const InputEvent& event, bool inPicture, PictureSize size, Sessi
       y_ = event.y;
       return;
     case InputEvent::Kind::Wheel:
-      if (inPicture && event.steps != 0) session.Dolly(event.steps);
+      if (inPicture && event.steps != 0) session.liveView().Dolly(event.steps);
       return;
     default:
       return;
@@ -201,10 +201,10 @@ void Hand::Move(const InputEvent& event, PictureSize size, Session& session) {
       return;
     }
     case Grip::Orbit:
-      session.Orbit(event.x - x_, event.y - y_, size.width, size.height);
+      session.liveView().Orbit(event.x - x_, event.y - y_, size.width, size.height);
       return;
     case Grip::Pan:
-      session.Pan(event.x - x_, event.y - y_, size.width, size.height);
+      session.liveView().Pan(event.x - x_, event.y - y_, size.width, size.height);
       return;
     case Grip::MaybePin:
       if (std::hypot(event.x - pressX_, event.y - pressY_) <= kClickSlack) return;

@@ -58,6 +58,10 @@ double Messages::Now() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
+Diagnostic MakeRefusal(std::string_view label, const std::string& why) {
+  return MakeError(std::string(label) + ": " + why + "; the old value stays");
+}
+
 std::string ConsoleLine(const Message& message) {
   const Diagnostic& d = message.diagnostic;
   char time[40];

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "percale/diagnostic.h"
@@ -46,6 +47,9 @@ class Messages {
   Listener listener_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Of what was typed for a parameter, and will not do: "Damping: WHY; the old value stays".
+Diagnostic MakeRefusal(std::string_view label, const std::string& why);
 
 /// A message as it is copied: "12.3 s  error  scene  a.json:3:7: ... (3 times)".
 std::string ConsoleLine(const Message& message);

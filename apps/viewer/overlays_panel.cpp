@@ -66,10 +66,10 @@ void DrawOverlaysPanel(Session& session, UiState& state) {
   HeatMapChoice(session, state, heatMap);
   const bool hasRange = heatMap.quantity != Quantity::None && heatMap.quantity != Quantity::Contact;
   if (hasRange && state.heatScale.quantity == heatMap.quantity) RangeRow(session, state, heatMap);
-  if (heatMap != session.view().heatMap) session.SetHeatMap(heatMap);
+  if (heatMap != session.view().heatMap) session.liveView().SetHeatMap(heatMap);
 
   bool wireframe = session.view().wireframe;
-  if (ImGui::Checkbox("Wireframe", &wireframe)) session.ToggleWireframe();
+  if (ImGui::Checkbox("Wireframe", &wireframe)) session.liveView().ToggleWireframe();
   Control(session, state, "overlay wireframe", "Springs over any shader\n\nKey: W");
   Overlays overlays = session.view().overlays;
   for (const OverlayInfo& overlay : AllOverlays()) {
@@ -78,7 +78,7 @@ void DrawOverlaysPanel(Session& session, UiState& state) {
     ImGui::Checkbox(overlay.label.data(), &(overlays.*overlay.shown));
     Control(session, state, "overlay " + std::string(overlay.name), std::string(overlay.help));
   }
-  if (overlays != session.view().overlays) session.SetOverlays(overlays);
+  if (overlays != session.view().overlays) session.liveView().SetOverlays(overlays);
 }
 
 }  // namespace percale::viewer

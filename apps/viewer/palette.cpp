@@ -179,7 +179,7 @@ std::vector<PaletteCommand> ListCommands(Session& session, const UiState& state)
                         .name = std::string(action.name),
                         .enabled = !action.enabled || action.enabled(session, state)});
   }
-  for (const std::string& shader : session.shaderNames()) {
+  for (const std::string& shader : session.liveView().shaderNames()) {
     commands.push_back({.kind = Kind::Shader, .title = "Shader: " + shader, .name = shader});
   }
   for (const auto& preset : ListPresets(state.presetFolders)) {

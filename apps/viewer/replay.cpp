@@ -248,7 +248,7 @@ class Player {
     Command command = std::move(found->second);
     waiting_.erase(waiting_.begin(), std::next(found));  // Earlier ones were overtaken.
     if (!GoTo(line, line.Whole<int>("at"))) return false;
-    looping_ = Loops(command.kind, looping_);
+    mode_ = ModeAfter(command.kind, mode_);
     const bool loads = command.kind == Command::Kind::Load;
     timeline_->Execute(std::move(command));
     ++result_.commands;
@@ -263,7 +263,7 @@ class Player {
   /// To the frame that the log has got to.
   bool GoTo(const Line& line, int frame) {
     if (frame == Frame()) return true;
-    if (looping_) {
+    if (mode_ == TimeMode::Looping) {
       if (!timeline_->Seek(frame)) line.Fail("frame " + std::to_string(frame) + " is not in the history");
       return true;
     }
@@ -306,7 +306,7 @@ class Player {
   std::unique_ptr<Timeline> timeline_;
   std::optional<Scene> scene_;                // As the session had it set.
   std::map<std::uint64_t, Command> waiting_;  // Given, not done yet.
-  bool looping_ = false;
+  TimeMode mode_ = TimeMode::Paused;
 };
 
 /// The next line without its end; nothing at the end of the file. `whole` is false for a last line without end.

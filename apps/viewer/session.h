@@ -1,35 +1,33 @@
 #pragma once
 /// \file
-/// What a session of the viewer is, apart from its window: the scene as it is set now, the
-/// simulation, the view, the messages, the files that are watched. Keys and panels call it; it
-/// knows neither. Everything that happens is written to the session log.
+/// What a session of the viewer is, apart from its window: the scene as it is set now, the playback of its
+/// simulation, the view, the messages, what can be undone, the files. Keys and panels call it; it knows neither.
+/// Everything that happens is written to the session log.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "apps/viewer/background.h"
-#include "apps/viewer/file_watch.h"
 #include "apps/viewer/frame_table.h"
-#include "apps/viewer/kept_uniforms.h"
+#include "apps/viewer/live_view.h"
 #include "apps/viewer/messages.h"
+#include "apps/viewer/playback.h"
 #include "apps/viewer/recorder.h"
+#include "apps/viewer/scene_source.h"
 #include "apps/viewer/session_log.h"
-#include "apps/viewer/simulation.h"
 #include "apps/viewer/undo.h"
 #include "apps/viewer/viewer.h"
 #include "percale/parameters.h"
-#include "render/gl_device.h"
 #include "render/image.h"
 #include "render/scene_view.h"
-#include "render/view_file.h"
 
 namespace percale::viewer {
 
@@ -54,22 +52,14 @@ class Session {
   /// at least ten times per second. `now` counts seconds. Returns whether there is anything new to show.
   bool Update(double now);
 
-  // Time.
-  void TogglePause();
-  /// One frame. Does nothing, and returns false, while running.
-  bool StepOneFrame();
+  // Time, and the newest state.
+  Playback& playback() { return playback_; }
+  const Playback& playback() const { return playback_; }
+  const Snapshot& snapshot() const { return playback_.snapshot(); }
   void ResetCloth();
-  bool running() const;
-  bool looping() const;
-
-  // The past. Each returns whether there was something to do.
-  bool Seek(int frame);  ///< To a frame of the history, paused.
-  bool StepBack();       ///< To the frame before, paused.
-  bool StepForward();    ///< To the frame after, paused; after the last, one new frame.
-  bool ToggleLoop();     ///< Shows the history again and again, or stops.
-  /// The frame that is shown, or will be when what was sent is done.
-  int frame() const;
   void SetHistoryBudget(std::size_t bytes);
+
+  // Undo.
   /// While the user holds a control, its changes count as one.
   void HoldChanges(bool held) { undo_.Hold(held); }
   bool Undo();
@@ -100,39 +90,21 @@ class Session {
   /// What was typed for a parameter will not do, and why.
   void Refuse(const Parameter& parameter, int index, const std::string& why);
 
-  // View.
-  const View& view() const { return view_; }
-  void Orbit(double dx, double dy, int width, int height);
-  void Pan(double dx, double dy, int width, int height);
-  void Dolly(double steps);
-  void ResetCamera();
+  // What is seen.
+  LiveView& liveView() { return liveView_; }
+  const LiveView& liveView() const { return liveView_; }
+  const View& view() const { return liveView_.view(); }
   void SetShader(const std::string& name);
   void CycleShader(int by);
-  /// Draws the springs over any shader, or no longer.
-  void ToggleWireframe();
-  void SetHeatMap(const HeatMapSettings& settings);
-  void SetOverlays(const Overlays& overlays);
-  std::span<const ShaderParameter> ShaderParameters();  ///< Of the current shader.
-  UniformValue Uniform(const ShaderParameter& parameter) const;
-  void SetUniform(const ShaderParameter& parameter, const UniformValue& value);
-  /// The current shader's parameters as the shader has them; forgets what was kept.
-  void ResetUniforms();
-  bool HasOwnUniforms() const { return !view_.uniforms.empty(); }
   /// Makes a shader from the template, and draws with it.
   Status CreateShader(const std::string& name);
-  void RefuseUniform(const ShaderParameter& parameter, const std::string& why);
-  const std::vector<std::string>& shaderNames() const { return shaders_.names(); }
 
   // Files.
   void Reload();
   /// Another scene, paused at its start. When it cannot be read the old one stays.
   bool OpenScene(const std::filesystem::path& file);
-  /// The scene files of the folder that the current one is in, by name.
-  std::vector<std::filesystem::path> SceneFiles() const;
   /// A scene, checkpoint, or picture that tells what it shows; another picture becomes the first texture.
   bool OpenFile(const std::filesystem::path& file);
-  /// Of the shaders, number 0..3. Can be undone.
-  void SetTexture(std::size_t number, const std::filesystem::path& file);
   /// Saves the state to NAME-frameN.percale in the current folder.
   void SaveState();
   /// To the newest such file, of the current folder and the scene's. Can be undone. Returns whether there is one.
@@ -152,10 +124,11 @@ class Session {
   void FinishFiles(const std::function<void(const PictureOrder&)>& draw);
   /// The scene file that follows the current one in its folder, or with `by` < 0 the one before.
   void CycleScene(int by);
-  const std::filesystem::path& sceneFile() const { return sceneFile_; }
+  const std::filesystem::path& sceneFile() const { return source_.file(); }
+  /// The scene files of the folder that the current one is in, by name.
+  std::vector<std::filesystem::path> SceneFiles() const { return source_.Files(); }
 
-  const Snapshot& snapshot() const { return snapshot_; }  ///< The newest state.
-  FrameTable& frames() { return frames_; }                ///< What the last frames did.
+  FrameTable& frames() { return frames_; }  ///< What the last frames did.
   const FrameTable& frames() const { return frames_; }
   /// Writes some of them as a table into the current folder.
   void ExportPlots(std::span<const FrameRow> rows);
@@ -163,34 +136,21 @@ class Session {
   SessionLog& log() { return log_; }
   bool logged() const { return log_.enabled(); }
   std::string Title() const;
-  /// Problems of drawing the last picture, none if all went well.
-  void ReportDrawing(const Status& drawn, const Diagnostics& warnings);
   void CountPicture() { ++pictures_; }
 
  private:
-  /// Reads the scene and applies the assignments to it; reports what is wrong as of `source`.
-  bool Load(const std::filesystem::path& file, const std::string& source, Scene& scene, bool& statesShader);
+  void Tell(const std::string& source, const Diagnostic* diagnostic);
+  void Begin();
+  void StartAnew(Scene scene, std::shared_ptr<const WorldState> state, int frame);
+  void ReloadScene();
   std::filesystem::path OutputStem() const;
   void KeepState(std::uint64_t command, std::shared_ptr<const WorldState> state);
   bool ReadReports(const std::vector<JobReport>& reports);
-  std::uint64_t SendState(const std::filesystem::path& file, std::shared_ptr<const WorldState> state, bool undoable);
-  void SendFrames(int frames);
-  bool UsesTexture(std::size_t number);
-  void LogTexture(std::size_t number);
-  void AdoptUniforms();
   bool ReadFilm();
-  void ReloadScene();
-  void ReloadTextures(const std::vector<std::filesystem::path>& files);
-  bool LookAtTextures();
-  void AdoptLook();
+  std::uint64_t SendState(const std::filesystem::path& file, std::shared_ptr<const WorldState> state, bool undoable);
   void CheckSettings();
-  void RefreshShaderMessages();
   void ReadSnapshot(double now);
   void LogState(double now);
-  /// Sends a command, and logs it in a line of its own.
-  std::uint64_t Send(Command command);
-  /// The same with other lines.
-  std::uint64_t Send(Command command, std::vector<LogLine> lines);
   /// The one way in which the user changes settings: as a change that can be undone, and that is merged with the one
   /// before it while what `path` names is held. Keeps the state where the cloth is to start anew.
   Status ChangeSettings(const std::string& label, const std::string& path, Scene settings);
@@ -201,29 +161,17 @@ class Session {
   /// Sends the settings as they are.
   std::uint64_t SendSettings(std::vector<LogLine> lines, bool undoable = false);
   std::uint64_t SendHandles(bool undoable);
-  std::optional<UniformValue> Chosen(const std::string& uniform) const;
-  void ChooseValues(const std::string& shader, const ShaderValues& values);
-  void Run(bool running);
   /// Takes a change back, or does it again; returns the command whose state before it leads back, or 0.
   std::uint64_t Travel(const Change& change, bool forth);
 
   const ViewerOptions options_;
-  GlDevice& device_;
-  ShaderLibrary& shaders_;
   SessionLog log_;
   Messages messages_;
-  Scene scene_;
-  Scene fileScene_;  // As it was read last.
-  std::filesystem::path sceneFile_;
-  std::filesystem::path browsed_;  // Where CycleScene stands, which may be a file that could not be read.
-  FileWatch sceneWatch_;
-  std::map<std::filesystem::path, FileWatch> textureWatches_;
-  View view_;
-  bool cameraMoved_ = false;  // By the user.
-  bool cameraUnlogged_ = false;
-  Snapshot snapshot_;
-  FrameTable frames_;
   UndoStack undo_;
+  Scene scene_;
+  SceneSource source_;
+  LiveView liveView_;
+  FrameTable frames_;
   std::vector<Handle> handles_;
   struct SaveOrder {
     enum What { Checkpoint, Picture } what;
@@ -234,20 +182,12 @@ class Session {
   Background background_;
   std::function<void()> wake_;
   std::unique_ptr<Recorder> recorder_;
-  KeptUniforms kept_;
-  std::string givenShader_;      // The one that was begun with, or that a picture showed...
-  UniformValues givenUniforms_;  // ...with these values, which come before those that are kept...
-  bool givenAreWhole_;           // ...or stand alone.
-  Simulation simulation_;
-  bool wantsRunning_ = false, wantsLooping_ = false;
-  std::uint64_t lastSent_ = 0, lastDone_ = 0, lastApply_ = 0;
-  std::uint64_t sought_ = 0;  // The last command to seek, and where to.
-  int soughtFrame_ = 0;
+  Playback playback_;
+  std::uint64_t lastApply_ = 0;
   double nextLook_ = 0;    // At the files [s].
   double lastState_ = -1;  // Logged [s].
   bool stateUnlogged_ = false;
   bool toldFull_ = false;  // That the history has reached its budget.
-  std::set<std::string> reportedShaders_;
   std::int64_t pictures_ = 0;
 };
 

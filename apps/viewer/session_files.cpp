@@ -1,4 +1,4 @@
-// What of a Session has to do with files that it makes and opens: checkpoints, pictures, textures.
+// What of a Session has to do with files that it makes and opens: scenes, checkpoints, pictures, films, tables.
 
 #include <algorithm>
 #include <chrono>
@@ -13,6 +13,7 @@
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "percale/checkpoint_file.h"
+#include "render/view_file.h"
 
 namespace percale::viewer {
 namespace {
@@ -20,8 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kFrameMark = "-frame";
-/// A picture that is opened runs to its frame in pieces of so many frames, so that it can be watched.
-constexpr int kFramesAtOnce = 5;
 /// Of pictures: nearly as small as 9, much faster.
 constexpr int kPngLevel = 6;
 
@@ -53,6 +52,13 @@ fs::path Whole(const fs::path& file) {
   return error ? file : whole.lexically_normal();
 }
 
+/// Whether two scenes have the same values in all parameters of a group.
+bool SameGroup(std::string_view group, const Scene& a, const Scene& b) {
+  const std::vector<Difference> differences = Differences(a, b);
+  return std::none_of(differences.begin(), differences.end(),
+                      [&](const Difference& d) { return d.parameter->group == group; });
+}
+
 /// Writes a checkpoint beside those there are.
 JobReport WriteCheckpoint(const WorldState& state, const fs::path& stem) {
   fs::path named = stem;
@@ -69,8 +75,8 @@ JobReport WriteCheckpoint(const WorldState& state, const fs::path& stem) {
 
 /// Files that are made are called after the scene, also when it came from such a file.
 fs::path Session::OutputStem() const {
-  const std::string stem = PathText(sceneFile_.stem());
-  const std::string ending = LowerExtension(sceneFile_);
+  const std::string stem = PathText(sceneFile().stem());
+  const std::string ending = LowerExtension(sceneFile());
   std::string_view name = stem;
   if (ending == ".percale" && !SceneOfCheckpoint(stem).empty()) name = SceneOfCheckpoint(stem);
   if (ending == ".png") name = WithoutNumber(stem);
@@ -78,11 +84,11 @@ fs::path Session::OutputStem() const {
 }
 
 void Session::SaveState() {
-  saves_[Send({.kind = Command::Kind::Save})] = {SaveOrder::Checkpoint, view_};
+  saves_[playback_.Send({.kind = Command::Kind::Save})] = {SaveOrder::Checkpoint, view()};
 }
 
 void Session::TakePicture() {
-  saves_[Send({.kind = Command::Kind::Save})] = {SaveOrder::Picture, view_};
+  saves_[playback_.Send({.kind = Command::Kind::Save})] = {SaveOrder::Picture, view()};
 }
 
 /// The state that was to be saved has come.
@@ -133,7 +139,7 @@ void Session::KeepPicture(Image image, const PictureOrder& order) {
 bool Session::ReadReports(const std::vector<JobReport>& reports) {
   for (const JobReport& report : reports) {
     messages_.Set("saving a " + report.what, report.diagnostics);
-    if (!report.file.empty() && log_.enabled())
+    if (!report.file.empty())
       log_.Write(LogLine("saved").Text("what", report.what).Text("file", PathText(report.file)));
   }
   return !reports.empty();
@@ -145,7 +151,7 @@ bool Session::ToggleRecording() {
     recorder_->Stop(Now());
   else
     recorder_ = std::make_unique<Recorder>(OutputStem(), Now(), wake_);
-  if (log_.enabled()) log_.Write(LogLine("record").Flag("recording", !recorder_->stopped()));
+  log_.Write(LogLine("record").Flag("recording", !recorder_->stopped()));
   return true;
 }
 
@@ -159,7 +165,7 @@ bool Session::ReadFilm() {
   const bool ended = recorder_->ended();  // Before its last report is taken.
   const bool news = ReadReports(recorder_->TakeReports());
   if (!ended) return news;
-  if (!recorder_->stopped() && log_.enabled()) log_.Write(LogLine("record").Flag("recording", false));
+  if (!recorder_->stopped()) log_.Write(LogLine("record").Flag("recording", false));
   const std::vector<JobReport> last = recorder_->TakeReports();
   recorder_.reset();
   ReadReports(last);
@@ -179,7 +185,7 @@ void Session::FinishFiles(const std::function<void(const PictureOrder&)>& draw) 
     if (!over) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   background_.Finish();
-  kept_.WriteAll();
+  liveView_.Finish();
   Update(Now());
 }
 
@@ -188,22 +194,15 @@ std::uint64_t Session::SendState(const fs::path& file, std::shared_ptr<const Wor
   Command command{.kind = Command::Kind::Load, .undoable = undoable, .state = std::move(state)};
   LogLine line = DescribeCommand(command);
   line.Text("file", PathText(Whole(file))).Config(*command.state->scene);
-  wantsRunning_ = wantsLooping_ = false;
   handles_.clear();
-  return Send(std::move(command), {std::move(line)});
-}
-
-/// From the start to a frame.
-void Session::SendFrames(int frames) {
-  for (; frames > 0; frames -= kFramesAtOnce)
-    Send({.kind = Command::Kind::Step, .frames = std::min(frames, kFramesAtOnce)});
+  return playback_.Send(std::move(command), {std::move(line)});
 }
 
 bool Session::LoadNewestState() {
   const std::string stem = PathText(OutputStem().filename());
   fs::path newest;
   fs::file_time_type newestTime{};
-  for (const fs::path& folder : {fs::path("."), sceneFile_.parent_path()}) {
+  for (const fs::path& folder : {fs::path("."), sceneFile().parent_path()}) {
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
       const fs::path& file = entry->path();
@@ -245,7 +244,7 @@ bool Session::OpenFile(const fs::path& file) {
       return false;
     }
     if (!*picture) {
-      SetTexture(0, Whole(file));
+      liveView_.SetTexture(0, Whole(file));
       return true;
     }
     opened = std::move(**picture);
@@ -257,58 +256,74 @@ bool Session::OpenFile(const fs::path& file) {
     }
     opened = std::move(*checkpoint);
   }
-  sceneFile_ = browsed_ = file;
-  sceneWatch_ = FileWatch(file);
-  fileScene_ = scene_ = opened.scene;
-  if (opened.view) {
-    givenShader_ = opened.view->look.shader;
-    givenUniforms_ = opened.view->uniforms;
-    givenAreWhole_ = true;
-    opened.view->look = view_.look;
-    view_ = std::move(*opened.view);
-    if (log_.enabled()) log_.Write(LogLine("wireframe").Flag("visible", view_.wireframe));
-  }
-  AdoptLook();
-  AdoptUniforms();
-  messages_.Set("scene", {});
   messages_.Set("open", {});
-  if (opened.state) {
-    SendState(file, std::move(opened.state), false);
-  } else {
-    Run(false);
-    SendSettings({LogLine("open").Text("scene", PathText(file)).Config(scene_)});
-    Send({.kind = Command::Kind::Reset});
-    SendFrames(opened.frame);
-  }
-  handles_.clear();
-  undo_.Clear();
-  ResetCamera();
-  CheckSettings();
+  source_.Adopt(file, opened.scene);
+  if (opened.view) liveView_.Show(std::move(*opened.view));
+  StartAnew(std::move(opened.scene), std::move(opened.state), opened.frame);
   return true;
 }
 
-void Session::SetTexture(std::size_t number, const fs::path& file) {
-  fs::path& texture = view_.textures[number];
-  undo_.Push({.label = "Texture", .texture = true, .textureBefore = texture, .textureAfter = file});
-  texture = file;
-  const bool uses = UsesTexture(number);
-  messages_.Set("texture", {Note(file, "is the shaders' texture " + std::to_string(number + 1) +
-                                           (uses ? "" : ", which " + view_.look.shader + " does not use") +
-                                           "; Ctrl+Z takes it back")});
-  LogTexture(number);
+bool Session::OpenScene(const fs::path& file) {
+  source_.BrowseTo(file);
+  Result<SceneReading> read = source_.Read(file);
+  messages_.Set("open", read.diagnostics());
+  if (!read) return false;
+  source_.Adopt(file, read->scene);
+  if (!read->statesShader) read->scene.look.shader = scene_.look.shader;
+  StartAnew(std::move(read->scene), nullptr, 0);
+  return true;
 }
 
-/// Whether the current shader draws with it.
-bool Session::UsesTexture(std::size_t number) {
-  const ShaderProgram* program = shaders_.Find(view_.look.shader);
-  return program && program->Location("u_texture_" + std::to_string(number + 1)) >= 0;
+void Session::CycleScene(int by) {
+  const Result<fs::path> next = source_.Next(by);
+  if (next)
+    OpenScene(*next);
+  else
+    messages_.Set("open", next.diagnostics());
 }
 
-void Session::LogTexture(std::size_t number) {
-  if (!log_.enabled()) return;
-  log_.Write(LogLine("texture")
-                 .Number("number", static_cast<double>(number + 1))
-                 .Text("file", PathText(view_.textures[number])));
+/// With another scene, paused at a state of it, or so many frames from its start.
+void Session::StartAnew(Scene scene, std::shared_ptr<const WorldState> state, int frame) {
+  AdoptSettings(std::move(scene), Effect::View, {});
+  messages_.Set("scene", {});
+  if (state) {
+    SendState(sceneFile(), std::move(state), false);
+  } else {
+    playback_.Run(false);
+    SendSettings({LogLine("open").Text("scene", PathText(sceneFile())).Config(scene_)});
+    playback_.Send({.kind = Command::Kind::Reset});
+    playback_.StepFrames(frame);
+  }
+  handles_.clear();
+  undo_.Clear();
+  liveView_.ResetCamera(scene_);
+}
+
+/// The file's values count, but what the user chose to see stays unless the file has changed it.
+void Session::ReloadScene() {
+  Result<SceneReading> read = source_.ReadAgain();
+  messages_.Set("scene", read.diagnostics());
+  if (!read) return;
+  Scene& loaded = read->scene;
+  const bool sameLook = SameGroup("look", loaded, source_.scene());
+  const bool sameCamera = SameGroup("camera", loaded, source_.scene());
+  source_.Adopt(loaded);
+  if (sameLook) loaded.look = scene_.look;
+  const Effect effect = EffectOf(scene_, loaded).value_or(Effect::View);
+  LogLine line = LogLine("reload").Text("what", "scene").Text("file", PathText(sceneFile())).Config(loaded);
+  AdoptSettings(std::move(loaded), effect, {std::move(line)});
+  if (!liveView_.cameraMoved() || !sameCamera) liveView_.ResetCamera(scene_);
+}
+
+void Session::Reload() {
+  ReloadScene();
+  liveView_.Reload();
+}
+
+void Session::ExportPlots(std::span<const FrameRow> rows) {
+  const Result<fs::path> file = ExportFrames(rows, sceneFile());
+  messages_.Set("export", file ? Diagnostics{} : file.diagnostics());
+  if (file) log_.Write(LogLine("export").Text("file", PathText(*file)));
 }
 
 }  // namespace percale::viewer

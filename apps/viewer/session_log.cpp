@@ -103,6 +103,26 @@ LogLine DescribeCommand(const Command& command) {
   return text;
 }
 
+std::string ValuePath(const Parameter& parameter, int index) {
+  std::string path = "/" + std::string(parameter.group);
+  if (FindGroup(parameter.group)->isArray && index >= 0) path += "/" + std::to_string(index);
+  return path + "/" + std::string(parameter.name);
+}
+
+LogLine DescribeSettings(const Scene& scene) {
+  return LogLine("settings").Config(scene);
+}
+
+std::vector<LogLine> DescribeValues(const Scene& before, const Scene& after) {
+  std::vector<LogLine> lines;
+  for (const auto& [parameter, index] : Differences(before, after)) {
+    LogLine& line = lines.emplace_back("set");
+    line.Text("path", ValuePath(*parameter, static_cast<int>(index)));
+    line.Json("value", FormatValue(parameter->get(after, index)));
+  }
+  return lines;
+}
+
 Result<SessionLog> SessionLog::Open(const std::filesystem::path& file) {
   SessionLog log;
   log.file_ = OpenFile(file, "wb");

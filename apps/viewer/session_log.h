@@ -79,9 +79,11 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/viewer/timeline.h"
 #include "percale/diagnostic.h"
+#include "percale/parameters.h"
 #include "percale/scene.h"
 #include "percale/vec3.h"
 
@@ -111,6 +113,13 @@ class LogLine {
 
 /// The line of a command, without its number: all that a replay needs, but for the settings of Apply.
 LogLine DescribeCommand(const Command& command);
+
+/// "/cloth/0/ks"; with an index below 0, that of every object: "/cloth/ks".
+std::string ValuePath(const Parameter& parameter, int index);
+/// The line of all settings at once.
+LogLine DescribeSettings(const Scene& scene);
+/// A line for each value that differs.
+std::vector<LogLine> DescribeValues(const Scene& before, const Scene& after);
 
 class SessionLog {
  public:

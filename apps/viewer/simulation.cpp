@@ -106,7 +106,7 @@ void Simulation::LoopOrThrow() {
     {
       std::unique_lock lock(mutex_);
       const auto awake = [this] { return stop_ || !commands_.empty(); };
-      if (mode_ != Mode::Paused)
+      if (mode_ != TimeMode::Paused)
         wake_.wait_until(lock, nextFrame_, awake);
       else
         wake_.wait(lock, awake);
@@ -123,7 +123,7 @@ void Simulation::LoopOrThrow() {
       continue;
     }
     const Clock::time_point now = Clock::now();
-    if (mode_ == Mode::Paused || now < nextFrame_) continue;
+    if (mode_ == TimeMode::Paused || now < nextFrame_) continue;
     const auto period = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(1.0 / std::max(1, timeline_.world().scene().simulation.framesPerSecond)));
     nextFrame_ = std::max(nextFrame_ + period, now - kCatchUpFrames * period);
@@ -136,12 +136,8 @@ void Simulation::Execute(Command command) {
   using enum Command::Kind;
   const Command::Kind kind = command.kind;
   const bool changesFrame = kind == Reset || kind == Seek || kind == Restore || kind == Load;
-  if (kind == Run)
-    mode_ = timeline_.world().report().divergence ? Mode::Paused : Mode::Running;
-  else if (Loops(kind, mode_ == Mode::Looping))
-    mode_ = Mode::Looping;
-  else if (kind == Pause || kind == Seek || kind == Restore || kind == Load)
-    mode_ = Mode::Paused;
+  mode_ = ModeAfter(kind, mode_);
+  if (timeline_.world().report().divergence && kind == Run) mode_ = TimeMode::Paused;
   if (kind == Run || kind == Loop || kind == Pause) {
     nextFrame_ = rateSince_ = Clock::now();
     framesSince_ = 0;
@@ -151,21 +147,21 @@ void Simulation::Execute(Command command) {
   executed_.push_back(timeline_.Execute(std::move(command)));
   if (kind == Step) frameSeconds_ = std::chrono::duration<double>(Clock::now() - begin).count() / frames;
   if (changesFrame) frameSeconds_ = 0;
-  if (mode_ == Mode::Paused) framesPerSecond_ = 0;
+  if (mode_ == TimeMode::Paused) framesPerSecond_ = 0;
   CopyTopologies();
 }
 
 void Simulation::ShowNextFrame() {
   const Clock::time_point begin = Clock::now();
-  const bool shown = mode_ == Mode::Looping ? timeline_.LoopFrame() : timeline_.StepFrame();
-  if (mode_ == Mode::Running) frameSeconds_ = std::chrono::duration<double>(Clock::now() - begin).count();
-  if (mode_ == Mode::Looping) CopyTopologies();
-  if (!shown) mode_ = Mode::Paused;
+  const bool shown = mode_ == TimeMode::Looping ? timeline_.LoopFrame() : timeline_.StepFrame();
+  if (mode_ == TimeMode::Running) frameSeconds_ = std::chrono::duration<double>(Clock::now() - begin).count();
+  if (mode_ == TimeMode::Looping) CopyTopologies();
+  if (!shown) mode_ = TimeMode::Paused;
   CountFrame();
 }
 
 void Simulation::CountFrame() {
-  if (mode_ == Mode::Paused) return;
+  if (mode_ == TimeMode::Paused) return;
   const Clock::time_point now = Clock::now();
   ++framesSince_;
   const double period = std::chrono::duration<double>(now - rateSince_).count();
@@ -208,8 +204,8 @@ void Simulation::Publish() {
   back_.balls.assign(world.balls().begin(), world.balls().end());
   back_.report = world.report();
   back_.history = timeline_.history().info();
-  back_.running = mode_ == Mode::Running;
-  back_.looping = mode_ == Mode::Looping;
+  back_.running = mode_ == TimeMode::Running;
+  back_.looping = mode_ == TimeMode::Looping;
   back_.frameSeconds = frameSeconds_;
   back_.framesPerSecond = framesPerSecond_;
   back_.hash = timeline_.Hash();

@@ -80,7 +80,6 @@ class Simulation {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Mode { Paused, Running, Looping };
   void Loop();
   void LoopOrThrow();
   void Execute(Command command);
@@ -95,7 +94,7 @@ class Simulation {
   std::vector<std::shared_ptr<const ClothTopology>> topologies_;
   std::shared_ptr<const Scene> topologyScene_;  // They are those of its cloths.
   Snapshot back_;
-  Mode mode_ = Mode::Paused;
+  TimeMode mode_ = TimeMode::Paused;
   double frameSeconds_ = 0;
   double framesPerSecond_ = 0;
   std::vector<Executed> executed_;

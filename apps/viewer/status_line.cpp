@@ -51,7 +51,7 @@ void DrawStatusLine(Session& session, UiState& state, float pictureWidth) {
   std::string text = PathText(session.sceneFile().filename());
   if (session.snapshot().report.divergence)
     text += "   blown up: R starts over";
-  else if (session.running())
+  else if (session.playback().running())
     text += "   running: P pauses";
   else
     text += "   paused: P runs, N steps one frame";

@@ -89,15 +89,16 @@ void Track(Session& session, UiState& state, float width) {
     const float share = std::clamp((ImGui::GetIO().MousePos.x - left) / (right - left), 0.0f, 1.0f);
     const int frame = history.firstFrame + std::min(static_cast<int>(std::lround(static_cast<double>(share) * count)),
                                                     history.lastFrame - history.firstFrame);
-    if (frame != session.frame() || session.running() || session.looping()) session.Seek(frame);
+    if (frame != session.playback().frame() || session.playback().running() || session.playback().looping())
+      session.playback().Seek(frame);
   }
   Control(
       session, state, "track",
       "Frames " + std::to_string(history.firstFrame) + " to " + std::to_string(history.lastFrame) +
           " are kept: click or drag to go to one. What you then change or run on takes the place of the later ones.");
 
-  const float share =
-      std::clamp(static_cast<float>(session.frame() - history.firstFrame) / static_cast<float>(count), 0.0f, 1.0f);
+  const float share = std::clamp(
+      static_cast<float>(session.playback().frame() - history.firstFrame) / static_cast<float>(count), 0.0f, 1.0f);
   const float x = left + share * (right - left), half = 0.11f * height;
   ImDrawList* const list = ImGui::GetWindowDrawList();
   list->AddRectFilled({left, middle - half}, {right, middle + half}, ImGui::GetColorU32(ImGuiCol_FrameBg), half);
@@ -154,10 +155,11 @@ float DrawTimeBar(Session& session, UiState& state, float pictureWidth, float he
     NoteWindow(session, state, "time bar");
     IconButton(session, state, Icon::First, "first_frame");
     IconButton(session, state, Icon::Back, "step_back");
-    IconButton(session, state, session.running() || session.looping() ? Icon::Pause : Icon::Run, "pause");
+    IconButton(session, state, session.playback().running() || session.playback().looping() ? Icon::Pause : Icon::Run,
+               "pause");
     IconButton(session, state, Icon::Forth, "step_forward");
     IconButton(session, state, Icon::Last, "last_frame");
-    IconButton(session, state, Icon::Loop, "loop", session.looping());
+    IconButton(session, state, Icon::Loop, "loop", session.playback().looping());
     char time[80];
     std::snprintf(time, sizeof time, "frame %d   %.2f s", snapshot.report.frame, snapshot.report.time);
     const std::string memory = MemoryText(snapshot.history);

@@ -52,11 +52,16 @@ struct Command {
   std::shared_ptr<const WorldState> state = nullptr;
 };
 
-/// Whether the history is being looped through after a command of that kind; `before`: it was before.
-inline bool Loops(Command::Kind kind, bool before) {
+/// How time goes on by itself: not at all, in real time, or through the history.
+enum class TimeMode { Paused, Running, Looping };
+
+/// After a command of that kind.
+inline TimeMode ModeAfter(Command::Kind kind, TimeMode before) {
   using enum Command::Kind;
-  const bool ends = kind == Run || kind == Pause || kind == Seek || kind == Restore || kind == Load;
-  return kind == Loop || (before && !ends);
+  if (kind == Run) return TimeMode::Running;
+  if (kind == Loop) return TimeMode::Looping;
+  const bool ends = kind == Pause || kind == Seek || kind == Restore || kind == Load;
+  return ends ? TimeMode::Paused : before;
 }
 
 /// A command that has been carried out.

@@ -352,7 +352,7 @@ class Viewer {
     const auto [columns, rows] = Pixels();
     const Status drawn = Draw(columns, rows);
     state_.heatScale = scale_;
-    session_.ReportDrawing(drawn, device_.TakeWarnings());
+    session_.liveView().TellDrawing(drawn, device_.TakeWarnings());
   }
 
   Status Draw(int columns, int rows) {

@@ -425,7 +425,7 @@ void ParameterTick(Session& session, UiState& state, std::string_view group, std
 
 void ShaderRow(Session& session, UiState& state) {
   const Target target = MakeTarget(session, "look", "shader", Session::kAll);
-  const std::vector<std::string>& names = session.shaderNames();
+  const std::vector<std::string>& names = session.liveView().shaderNames();
   const std::string current = session.view().look.shader;
   const int at = static_cast<int>(std::find(names.begin(), names.end(), current) - names.begin());
   const std::string help = HelpText(target) + "\n\nKeys: " + KeysText(FindAction("previous_shader")) + " " +
@@ -435,7 +435,7 @@ void ShaderRow(Session& session, UiState& state) {
 }
 
 void UniformRow(Session& session, UiState& state, const ShaderParameter& parameter) {
-  UniformValue value = session.Uniform(parameter);
+  UniformValue value = session.liveView().Uniform(parameter);
   const std::string id = "uniform." + parameter.name;
   std::string help = (parameter.help.empty() ? "" : parameter.help + "\n\n") + parameter.name + " of the shader " +
                      session.view().look.shader;
@@ -453,11 +453,11 @@ void UniformRow(Session& session, UiState& state, const ShaderParameter& paramet
                           false,
                           parameter.type == ShaderParameter::Type::Int};
     const NumberEdit edit = NumberRow(session, state, spec, static_cast<double>(component));
-    if (edit.text) session.RefuseUniform(parameter, NotExpected("a number", *edit.text));
+    if (edit.text) session.liveView().RefuseUniform(parameter, NotExpected("a number", *edit.text));
     if (!edit.value) return;
     component = static_cast<float>(std::clamp(*edit.value, spec.min, spec.max));
     if (spec.whole) component = std::round(component);
-    session.SetUniform(parameter, value);
+    session.liveView().SetUniform(parameter, value);
   };
   switch (parameter.type) {
     case ShaderParameter::Type::Bool: {
@@ -465,7 +465,7 @@ void UniformRow(Session& session, UiState& state, const ShaderParameter& paramet
       bool on = value[0] != 0;
       if (ImGui::Checkbox(("##" + id).c_str(), &on)) {
         value[0] = on ? 1.0f : 0.0f;
-        session.SetUniform(parameter, value);
+        session.liveView().SetUniform(parameter, value);
       }
       Control(session, state, id, help);
       break;
@@ -480,7 +480,7 @@ void UniformRow(Session& session, UiState& state, const ShaderParameter& paramet
                                      parameter.choices[static_cast<std::size_t>(current)]);
         if (!chosen) break;
         value[0] = static_cast<float>(*chosen);
-        session.SetUniform(parameter, value);
+        session.liveView().SetUniform(parameter, value);
       }
       break;
     case ShaderParameter::Type::Float:
@@ -491,7 +491,7 @@ void UniformRow(Session& session, UiState& state, const ShaderParameter& paramet
         RowLabel(session, state, parameter.label, help);
         if (ImGui::ColorEdit3(("##" + id).c_str(), value.data())) {
           for (float& component : value) component = std::clamp(component, 0.0f, 1.0f);
-          session.SetUniform(parameter, value);
+          session.liveView().SetUniform(parameter, value);
         }
         Control(session, state, id, help);
       } else {

@@ -1,0 +1,53 @@
+#include "apps/viewer/hand_tools.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace percale::viewer {
+namespace {
+
+// A grip holds so much of the cloth's extent around it, but at least so many spacings of its grid.
+constexpr double kGripShare = 0.06, kGripSpacings = 2.5;
+// A ball, for a cloth of 1 m: its radius [m], its share of the cloths' mass, its speed [m/s]; and how many
+// radii before the eye it starts, so that it does not fill the picture.
+constexpr double kBallSize = 0.07, kBallMass = 0.1, kBallSpeed = 5, kBallStart = 6;
+// A gust: its speed [m/s], how it pushes a cloth that faces it [m/s^2], how long it blows [s]; the least drag that
+// is felt [kg/(m^2 s)].
+constexpr double kGustSpeed = 8, kGustPush = 30, kGustDuration = 0.8, kLeastDrag = 0.01;
+
+}  // namespace
+
+Handle GripOf(const Scene& scene, int index, int vertex, const Vec3& at) {
+  const ClothSettings& cloth = scene.cloths[static_cast<std::size_t>(index)];
+  const double spacing = std::max(cloth.width / (cloth.numWidthPoints - 1), cloth.height / (cloth.numHeightPoints - 1));
+  Handle handle{.cloth = index, .vertex = vertex, .target = at};
+  handle.radius = std::max(kGripShare * std::max(cloth.width, cloth.height), kGripSpacings * spacing);
+  return handle;
+}
+
+Ball BallFrom(const Scene& scene, const Vec3& point, const Vec3& direction) {
+  double extent = 0, mass = 0;
+  for (const ClothSettings& cloth : scene.cloths) {
+    extent = std::max({extent, cloth.width, cloth.height});
+    mass += cloth.width * cloth.height * cloth.density;
+  }
+  const Vec3 ahead = UnitOr(direction, {0, 0, -1});
+  Ball ball;
+  ball.radius = kBallSize * extent;
+  ball.position = point + ahead * (kBallStart * ball.radius);
+  ball.mass = mass > 0 ? kBallMass * mass : 1;
+  ball.velocity = ahead * (kBallSpeed * std::sqrt(extent));
+  return ball;
+}
+
+Gust GustTowards(const Scene& scene, const Vec3& direction) {
+  double density = 0;
+  for (const ClothSettings& cloth : scene.cloths) density = std::max(density, cloth.density);
+  Gust gust;
+  gust.velocity = UnitOr(direction, {0, 0, -1}) * kGustSpeed;
+  gust.drag = std::max({scene.wind.drag, kGustPush * density / kGustSpeed, kLeastDrag});
+  gust.duration = kGustDuration;
+  return gust;
+}
+
+}  // namespace percale::viewer
