@@ -18,29 +18,22 @@ struct UiState;
 constexpr const char* kPanelsTitle = "Panels";
 constexpr const char* kConsoleTitle = "Console";
 
+/// A function that draws what a panel holds.
+using PanelContent = void(Session& session, UiState& state);
+
 struct Panel {
   const char* title;
   bool openAtStart;
-  void (*draw)(Session&, UiState&);
+  PanelContent* draw;
   bool (*hasContent)(const Session&) = nullptr;  ///< Null: always.
 };
 
 /// From top to bottom: the course's in its order, then Percale's own.
 std::span<const Panel> Panels();
 
-void DrawSpringsPanel(Session& session, UiState& state);
-void DrawParametersPanel(Session& session, UiState& state);
-void DrawSimulationPanel(Session& session, UiState& state);
-void DrawDampingPanel(Session& session, UiState& state);
-void DrawGravityPanel(Session& session, UiState& state);
-void DrawAppearancePanel(Session& session, UiState& state);
-void DrawCollisionsPanel(Session& session, UiState& state);
-void DrawCollidersPanel(Session& session, UiState& state);
-void DrawWindPanel(Session& session, UiState& state);
-void DrawOverlaysPanel(Session& session, UiState& state);
-void DrawScenesPanel(Session& session, UiState& state);
-void DrawPresetsPanel(Session& session, UiState& state);
-void DrawStatisticsPanel(Session& session, UiState& state);
+PanelContent DrawSpringsPanel, DrawParametersPanel, DrawSimulationPanel, DrawDampingPanel, DrawGravityPanel,
+    DrawAppearancePanel, DrawScenesPanel, DrawPresetsPanel, DrawCollisionsPanel, DrawCollidersPanel, DrawWindPanel,
+    DrawOverlaysPanel, DrawStatisticsPanel;
 
 /// Width of the column at the right that holds the panels [screen unit].
 float PanelColumnWidth(const UiState& state);
