@@ -21,6 +21,7 @@ Executed Timeline::Execute(Command command) {
     case Run:
     case Loop:
     case Pause:
+      done.scene = world_.sharedScene();  // A loop stops at any frame of the history.
       break;
     case Step:
       for (int frame = 0; frame < command.frames && StepFrame(); ++frame) {

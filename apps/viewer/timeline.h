@@ -72,7 +72,7 @@ struct Executed {
   std::uint64_t hash = 0;                        ///< World::StateHash afterwards; 0 unless hashes were asked for.
   bool stateKept = true;                         ///< Whether the cloths are where they were.
   std::string failure = {};                      ///< Why it did nothing; else empty.
-  std::shared_ptr<const Scene> scene = {};       ///< The settings, where the command has brought others along.
+  std::shared_ptr<const Scene> scene = {};       ///< The settings, where others may have come with a frame.
   std::shared_ptr<const WorldState> state = {};  ///< For Save.
 };
 

@@ -119,6 +119,19 @@ TEST_CASE("it loops") {
   CHECK(frames == std::vector<int>{0, 1, 2, 3, 0, 1});
 }
 
+TEST_CASE("where a loop stops, the settings are those of the frame") {
+  Timeline timeline = Make();
+  const double ks = timeline.world().scene().cloths[0].ks;
+  Steps(timeline, 3);
+  SetKs(timeline, 2 * ks);
+  Steps(timeline, 3);
+  timeline.Execute(Of(Command::Kind::Loop));
+  CHECK(timeline.LoopFrame());  // The first again.
+  const Executed done = timeline.Execute(Of(Command::Kind::Pause));
+  REQUIRE(done.scene);
+  CHECK(done.scene->cloths[0].ks == ks);
+}
+
 TEST_CASE("what is undoable is undone to the bit, and redone") {
   Timeline timeline = Make();
   Steps(timeline, 10);

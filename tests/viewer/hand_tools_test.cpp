@@ -1,0 +1,49 @@
+#include "apps/viewer/hand_tools.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+using namespace percale;
+using namespace percale::viewer;
+
+namespace {
+
+Scene Square(double width, int points) {
+  Scene scene;
+  scene.cloths.resize(1);
+  scene.cloths[0].width = scene.cloths[0].height = width;
+  scene.cloths[0].numWidthPoints = scene.cloths[0].numHeightPoints = points;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the hand's tools will do for cloths of any size, and for none") {
+  for (const double width : {1e-3, 1.0, 1e3}) {
+    for (const int points : {2, 50, 1000}) {
+      const Scene scene = Square(width, points);
+      CAPTURE(width);
+      CAPTURE(points);
+      const Handle handle = GripOf(scene, 0, 1, {1, 2, 3});
+      CHECK_FALSE(Check(handle));
+      CHECK(handle.target == Vec3{1, 2, 3});
+      CHECK(handle.radius > width / (points - 1));  // More than one point.
+      CHECK_FALSE(Check(BallFrom(scene, {0, 0, 0}, {0, 0, -1})));
+      CHECK_FALSE(Check(GustTowards(scene, {0, 0, -1})));
+    }
+  }
+  const Scene none;
+  CHECK_FALSE(Check(GustTowards(none, {0, 0, 0})));
+}
+
+TEST_CASE("a ball grows with the cloth and weighs with it, and flies where it is thrown") {
+  const Ball small = BallFrom(Square(1, 50), {0, 0, 5}, {0, 0, -2}),
+             large = BallFrom(Square(3, 50), {0, 0, 5}, {1, 0, 0});
+  CHECK(large.radius == doctest::Approx(3 * small.radius));
+  CHECK(large.mass == doctest::Approx(9 * small.mass));
+  CHECK(small.velocity.z < 0);
+  CHECK(small.position.z + small.radius < 5);
+  CHECK(large.velocity.x > 0);
+  CHECK(large.velocity.z == 0);
+}
