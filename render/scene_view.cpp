@@ -12,8 +12,6 @@
 namespace percale {
 namespace {
 
-// Flat triangles cut corners: at its full radius the drawn cloth would dip into the drawn sphere.
-constexpr double kDrawnSphereRadius = 0.92;
 constexpr double kWidestLight = 0.98;  // Sine of half the angle that a shadow map covers.
 constexpr Color kPlaneColor{0.7f, 0.7f, 0.7f, 1};
 constexpr Color kOverlayColor{0.08f, 0.08f, 0.08f, 1};

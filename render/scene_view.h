@@ -16,6 +16,10 @@
 
 namespace percale {
 
+/// Of a sphere's radius, what is drawn. Flat triangles cut corners: at its full radius the drawn cloth would
+/// dip into the drawn sphere.
+inline constexpr double kDrawnSphereRadius = 0.92;
+
 /// How to look at a scene.
 struct View {
   LookSettings look;  ///< Shader, colour, scales, tangents.

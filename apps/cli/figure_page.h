@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/cli/figure_studies.h"
+#include "apps/cli/figure_claims.h"
 #include "apps/cli/figure_table.h"
 
 namespace percale::cli {
