@@ -1,7 +1,6 @@
 #include "apps/cli/figure_claims.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "apps/cli/figure_judges.h"
 #include "apps/cli/figure_studies.h"
@@ -21,11 +20,15 @@ const char* VerdictName(Verdict verdict) {
 }
 
 bool IsComplete(const Measured& measured) {
-  std::vector<std::string> names = {kRatioStudy, kSphereStudy, kLightStudy, kSlack,   kSoftest,
-                                    kFold,       kFoldLight,   kFoldDense,  kFoldSoft};
-  names.insert(names.end(), std::begin(kHashStudies), std::end(kHashStudies));
-  for (const StudyCourse& course : StudyCourses()) names.push_back(course.name);
-  return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return measured.count(name) != 0; });
+  std::vector<StudyCourse> needed = StudyCourses();
+  for (const char* name : {kRatioStudy, kSphereStudy, kLightStudy, kSlack, kSoftest, kFold, kFoldLight, kFoldDense,
+                           kFoldSoft})  // the courses reach as far as their figures
+    needed.push_back({name, 0});
+  for (const char* name : kHashStudies) needed.push_back({name, 0});
+  return std::all_of(needed.begin(), needed.end(), [&](const StudyCourse& each) {
+    const auto found = measured.find(each.name);
+    return found != measured.end() && int(found->second.rows.size()) > each.frames;
+  });
 }
 
 Findings Judge(const Measured& measured) {

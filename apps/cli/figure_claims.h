@@ -45,7 +45,7 @@ struct Findings {
   std::vector<PartTable> tables;
 };
 
-/// Whether all is there that `Judge` needs.
+/// Whether all is there that `Judge` needs, beside the figures.
 bool IsComplete(const Measured& measured);
 /// What the measurements, which are complete, say of the write-up.
 Findings Judge(const Measured& measured);

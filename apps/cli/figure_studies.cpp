@@ -21,7 +21,7 @@ int RatioStudyFrames() {
   return 2 * kHangingFrames;
 }
 
-std::optional<Table> StudyHash(const std::string& study, const SceneLoader& load, const std::function<bool()>& goOn) {
+std::optional<Course> StudyHash(const std::string& study, const SceneLoader& load, const std::function<bool()>& goOn) {
   Scene scene = load(kFold);
   const auto found = std::find(std::begin(kHashStudies), std::end(kHashStudies), study);
   scene.simulation.hash = static_cast<HashFunction>(found - std::begin(kHashStudies));
@@ -32,7 +32,7 @@ std::optional<Table> StudyHash(const std::string& study, const SceneLoader& load
   while (world.report().frame < kHashFrames) {
     if (!goOn()) return std::nullopt;
     const StepReport& report = world.Step();
-    if (report.divergence) return table;
+    if (report.divergence) return Course{{}, {}, report.divergence};
     seconds += report.stageSeconds[std::size_t(Stage::FindContacts)];
     seconds += report.stageSeconds[std::size_t(Stage::SelfCollide)];
     if (report.frame % kHashEvery != 0) continue;
@@ -50,21 +50,23 @@ std::optional<Table> StudyHash(const std::string& study, const SceneLoader& load
                           sum / double(positions.size())});
     seconds = 0;
   }
-  return table;
+  return Course{std::move(table), {}, {}};
 }
 
-std::optional<Table> StudyRatio(const SceneLoader& load, const std::function<bool()>& goOn) {
+std::optional<Course> StudyRatio(const SceneLoader& load, const std::function<bool()>& goOn) {
   std::vector<Course> courses;
   for (const char* name : {kRatioA, kRatioB}) {
     auto course = MeasureCourse(load(name), kHangingFrames, {kHangingFrames}, goOn);
     if (!course) return std::nullopt;
+    if (course->divergence) return Course{{}, {}, course->divergence};
     courses.push_back(std::move(*course));
   }
   double farthest = 0;
   const std::vector<Vec3>&a = courses[0].shapes[kHangingFrames][0], &b = courses[1].shapes[kHangingFrames][0];
   for (std::size_t v = 0; v < a.size(); ++v) farthest = std::max(farthest, Length(a[v] - b[v]));
-  return Table{{"farthest", "lowest_y_a", "lowest_y_b"},
-               {{farthest, Last(courses[0].table, "lowest_y"), Last(courses[1].table, "lowest_y")}}};
+  Table table{{"farthest", "lowest_y_a", "lowest_y_b"},
+              {{farthest, Last(courses[0].table, "lowest_y"), Last(courses[1].table, "lowest_y")}}};
+  return Course{std::move(table), {}, {}};
 }
 
 Table CountSprings(const SceneLoader& load) {

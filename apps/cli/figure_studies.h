@@ -22,13 +22,16 @@ inline constexpr const char* kSpringsStudy = "springs";
 /// How a scene is loaded from a course's name.
 using SceneLoader = std::function<Scene(const std::string& course)>;
 
+// Both are nothing once `goOn` says no, and have no rows where the simulation diverges.
+
 /// One hash function at work on the falling sheet: every 10 frames, `frame`, `compared`, `false`,
 /// `close` and `missed` pairs, `seconds` per step of self-collision, `highest_y` and `mean_y` [m].
-/// `study` is one of kHashStudies. Nothing once `goOn` says no.
-std::optional<Table> StudyHash(const std::string& study, const SceneLoader& load, const std::function<bool()>& goOn);
+/// `study` is one of kHashStudies.
+std::optional<Course> StudyHash(const std::string& study, const SceneLoader& load, const std::function<bool()>& goOn);
 
-/// Two sheets with equal ks / density: the farthest that a point of one rests from that of the other.
-std::optional<Table> StudyRatio(const SceneLoader& load, const std::function<bool()>& goOn);
+/// Two sheets with equal ks / density: `farthest`, the most that a point of one rests from that of the other,
+/// and `lowest_y_a` and `lowest_y_b` [m].
+std::optional<Course> StudyRatio(const SceneLoader& load, const std::function<bool()>& goOn);
 
 /// How many springs figures 1, 2 and 3 show: `all`, `no_shearing`, `only_shearing`.
 Table CountSprings(const SceneLoader& load);

@@ -169,7 +169,8 @@ bool Gallery::ReadMeasured(const std::string& name, int frames) {
 
 int Gallery::Keep(const std::string& name, Table table) {
   const auto known = measured_.find(name);
-  if (known != measured_.end() && known->second.rows.size() >= table.rows.size()) return kDone;
+  const std::size_t rows = known != measured_.end() ? known->second.rows.size() : 0;
+  if (table.rows.size() <= rows) return kDone;
   const Status status = WriteTable(TableFile(name), Key(name), table);
   PrintDiagnostics(status.diagnostics());
   measured_[name] = std::move(table);
@@ -252,12 +253,8 @@ std::vector<Work> Gallery::MissingWorks() {
   const SceneLoader load = [this](const std::string& course) { return *LoadCourse(course); };
   const auto study = [&](const char* name, int frames, int weight, const auto& measure) {
     if (ReadMeasured(name, 0)) return;
-    works.push_back(
-        {name, frames * weight, weight, [measure, load](const std::function<bool()>& goOn) -> std::optional<Course> {
-           auto table = measure(load, goOn);
-           if (!table) return std::nullopt;
-           return Course{std::move(*table), {}, {}};
-         }});
+    works.push_back({name, frames * weight, weight,
+                     [measure, load](const std::function<bool()>& goOn) { return measure(load, goOn); }});
   };
   for (const char* name : kHashStudies) {
     study(

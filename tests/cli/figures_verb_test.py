@@ -1,5 +1,6 @@
 """percale figures as a verb: parts of the whole, what is kept, and what goes wrong. The whole is in figures_test.py."""
 
+import json
 import os
 import shutil
 import signal
@@ -44,6 +45,19 @@ class SomeFigures(ProgramTest):
         shader = self.folder / "shaders/Wireframe.frag"
         shader.write_text(shader.read_text() + "// changed\n")
         self.assertIn("1 of them drawn now", self.run_program(*only).stdout)
+
+    def test_divergence_is_told(self):
+        for name in ("shaders", "textures", "scene"):
+            shutil.copytree(ROOT / name, self.folder / name)
+        for name in ("pinned2", "selfCollision"):
+            file = self.folder / f"scene/{name}.json"
+            scene = json.loads(file.read_text())
+            scene.setdefault("simulation", {})["steps_per_frame"] = 1
+            file.write_text(json.dumps(scene))
+        for k in range(5):  # whichever simulation is the first to say so
+            done = self.run_program("figures", "-r", ".", "--size", "8x8", "-o", k, code=4)
+            self.assertRegex(done.stderr, "the simulation of .* diverged: ")
+            self.assertIn("of 49 figures", done.stdout)
 
     def test_unwritable(self):
         self.write("file", "")
