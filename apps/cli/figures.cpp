@@ -43,12 +43,20 @@ std::string FileBytes(const fs::path& file) {
   return bytes.str();
 }
 
-/// Of all shaders and textures: another one, and pictures are out of date.
+/// Of the program itself: another build may measure and draw otherwise, whatever its version.
+std::string ProgramFingerprint() {
+  return Fingerprint(FileBytes(ExecutablePath()));
+}
+
+/// Of all shaders and textures: another one, and pictures are out of date. Values that the viewer keeps beside
+/// the shaders do not count here.
 std::string AssetsFingerprint(const fs::path& root) {
   std::vector<fs::path> files;
   std::error_code ignored;
   for (const char* folder : {"shaders", "textures"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder, ignored)) files.push_back(entry.path());
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder, ignored)) {
+      if (entry.path().extension() != ".json") files.push_back(entry.path());
+    }
   }
   std::sort(files.begin(), files.end());
   std::string all;
@@ -102,7 +110,11 @@ struct CourseNeed {
 class Gallery {
  public:
   Gallery(const Options& options, fs::path root, fs::path folder, Painter painter)
-      : options_(options), root_(std::move(root)), folder_(std::move(folder)), painter_(std::move(painter)) {}
+      : options_(options),
+        root_(std::move(root)),
+        folder_(std::move(folder)),
+        painter_(std::move(painter)),
+        maker_(Text("percale %s (%s)", PERCALE_VERSION, ProgramFingerprint().c_str())) {}
 
   /// Loads the scenes, and looks at what is in the folder already. Returns the exit code, as do the others.
   int Prepare();
@@ -130,6 +142,7 @@ class Gallery {
   const Options& options_;
   fs::path root_, folder_;
   Painter painter_;
+  const std::string maker_;              // which build of the program
   std::map<std::string, Scene> scenes_;  // by the course's name
   std::vector<Drawing> drawings_;        // by number
   Measured measured_;
@@ -157,7 +170,7 @@ std::string Gallery::Key(const std::string& name) const {
       for (const Drawing& drawing : drawings_) from += drawing.key;
     }
   }
-  return Text("percale %s, %s, ", PERCALE_VERSION, name.c_str()) + Fingerprint(from);
+  return maker_ + ", " + name + ", " + Fingerprint(from);
 }
 
 bool Gallery::ReadMeasured(const std::string& name, int frames) {
@@ -193,7 +206,7 @@ int Gallery::PrepareFigure(const Figure& figure, const std::string& assets) {
     return code;
   std::string all = FormatScene(scene) + assets;
   for (const std::string& argument : arguments) all += " " + argument;
-  drawing.key = Text("percale %s, %d x %d, ", PERCALE_VERSION, options_.width, options_.height) + Fingerprint(all);
+  drawing.key = maker_ + Text(", %d x %d, ", options_.width, options_.height) + Fingerprint(all);
   const std::vector<int>& only = options_.figures;
   drawing.wanted = WantsAll() || std::find(only.begin(), only.end(), figure.number) != only.end();
 

@@ -5,6 +5,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import time
 import unittest
 
@@ -45,6 +46,30 @@ class SomeFigures(ProgramTest):
         shader = self.folder / "shaders/Wireframe.frag"
         shader.write_text(shader.read_text() + "// changed\n")
         self.assertIn("1 of them drawn now", self.run_program(*only).stdout)
+        # Values that the viewer keeps are not used here.
+        self.write("shaders/Wireframe.json", {"u_width": 2})
+        self.assertIn("0 of them drawn now", self.run_program(*only).stdout)
+
+    @unittest.skipUnless(sys.platform.startswith("linux"), "needs programs that run with bytes appended")
+    def test_a_changed_program_is_noticed(self):
+        program = self.folder / "percale"
+        shutil.copy(PERCALE, program)
+
+        def drawn():
+            done = subprocess.run([program, "figures", "-r", ROOT, "--size", "8x8", "--only", "8", "-o", "out"],
+                                  cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            table = self.folder / "out/measured/pinned2_cloth.density_0.csv"
+            return "1 of them drawn now" in done.stdout, table.read_text().splitlines()[0]
+
+        first, key = drawn()
+        self.assertTrue(first)
+        self.assertEqual(drawn(), (False, key))
+        with program.open("ab") as file:
+            file.write(b"another build")
+        again, other = drawn()
+        self.assertTrue(again)
+        self.assertNotEqual(other, key)
 
     def test_divergence_is_told(self):
         for name in ("shaders", "textures", "scene"):
