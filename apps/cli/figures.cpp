@@ -425,6 +425,9 @@ int Figures(const Options& options) {
   if (!painter) return noGraphics ? kNoGraphics : kFailed;
 
   const fs::path folder = options.output.empty() ? fs::path("figures") : TextPath(options.output);
+  CatchInterrupts();
+  Gallery gallery(options, *root, folder, std::move(*painter));
+  if (const int prepared = gallery.Prepare(); prepared != kDone) return prepared;
   std::error_code code;
   fs::create_directories(folder / "measured", code);
   if (code) {
@@ -432,10 +435,6 @@ int Figures(const Options& options) {
     return kFailed;
   }
   if (const int writable = CheckWritable(folder / "index.html"); writable != kDone) return writable;
-
-  CatchInterrupts();
-  Gallery gallery(options, *root, folder, std::move(*painter));
-  if (const int prepared = gallery.Prepare(); prepared != kDone) return prepared;
   const int made = gallery.Make();
   if (made != kDone && made != kInterrupted && made != kDiverged) return made;
   const int written = gallery.WritePage();

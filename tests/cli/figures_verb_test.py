@@ -16,6 +16,11 @@ class SomeFigures(ProgramTest):
     def figures(self, *arguments, **options):
         return self.run_program("figures", "-r", ROOT, "--size", "64x50", *arguments, **options)
 
+    def copy_root(self):
+        """What the program reads, for a test to change."""
+        for name in ("shaders", "textures", "scene"):
+            shutil.copytree(ROOT / name, self.folder / name)
+
     def test_only(self):
         done = self.figures("--only", "1,3-4,37")
         self.assertIn("4 of 49 figures", done.stdout)
@@ -38,8 +43,7 @@ class SomeFigures(ProgramTest):
             self.figures("--only", "1-3", "--size", "8x8", "--threads", 8, "-o", k)
 
     def test_a_changed_shader_is_noticed(self):
-        for name in ("shaders", "textures", "scene"):
-            shutil.copytree(ROOT / name, self.folder / name)
+        self.copy_root()
         only = ("figures", "-r", ".", "--size", "64x50", "--only", "1", "-o", "out")
         self.run_program(*only)
         self.assertIn("0 of them drawn now", self.run_program(*only).stdout)
@@ -72,8 +76,7 @@ class SomeFigures(ProgramTest):
         self.assertNotEqual(other, key)
 
     def test_divergence_is_told(self):
-        for name in ("shaders", "textures", "scene"):
-            shutil.copytree(ROOT / name, self.folder / name)
+        self.copy_root()
         for name in ("pinned2", "selfCollision"):
             file = self.folder / f"scene/{name}.json"
             scene = json.loads(file.read_text())
@@ -89,6 +92,12 @@ class SomeFigures(ProgramTest):
         for output in ("file", "file/below"):
             self.assertIn("file", self.figures("--only", "1", "-o", output, code=1).stderr)
         self.assertEqual(self.files(), ["file"])
+
+    def test_a_broken_scene_leaves_no_folder(self):
+        self.copy_root()
+        self.write("scene/plane.json", "{")
+        self.assertIn("plane.json:1:2", self.run_program("figures", "-r", ".", "--only", "1", "-o", "out", code=3).stderr)
+        self.assertFalse((self.folder / "out").exists())
 
     @unittest.skipIf(os.name == "nt", "POSIX signals")
     def test_interrupt_keeps_what_was_done(self):
