@@ -17,9 +17,13 @@ double RoundUp(double number) {
 std::vector<double> Ticks(double low, double high, int most) {
   std::vector<double> ticks;
   const double step = RoundUp((high - low) / most);
-  const double slack = 1e-6 * step;
-  for (double k = std::ceil((low - slack) / step); k * step <= high + slack; ++k)
-    ticks.push_back(k * step + 0.0);  // no -0
+  const double slack = 1e-6 * step, first = std::ceil((low - slack) / step);
+  for (int i = 0; i <= most; ++i) {
+    const double tick = (first + i) * step + 0.0;  // no -0
+    if (!(tick <= high + slack)) break;
+    // Between neighbouring doubles there is nothing.
+    if (ticks.empty() || tick > ticks.back()) ticks.push_back(tick);
+  }
   return ticks;
 }
 

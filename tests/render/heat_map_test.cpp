@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <set>
 
 #include "render/heat_scale.h"
@@ -258,9 +259,20 @@ TEST_CASE("ticks are round numbers, and texts as short as they can be") {
   CHECK(ticks[1] == doctest::Approx(1.05));
   CHECK(ticks.back() == doctest::Approx(1.2));
   CHECK(Ticks(-0.3, 0.31, 4).size() == 3);  // -0.2, 0, 0.2
+  CHECK(Ticks(0, 5, 5).size() == 6);
   CHECK(TickText(1.05, 0.05) == "1.05");
   CHECK(TickText(1200, 200) == "1200");
   CHECK(TickText(0, 1e-7) == "0");
   CHECK(TickText(3e-7, 1e-7) == "3e-07");
   CHECK(TickText(2e7, 1e7) == "2e+07");
+}
+
+TEST_CASE("a range as narrow as numbers can tell apart has few ticks, and they end") {
+  for (const double low : {1.0, -3e5, 1e300}) {
+    const double high = std::nextafter(low, INFINITY);
+    const std::vector<double> ticks = Ticks(low, high, 5);
+    CHECK(ticks.size() <= 6);
+    CHECK(std::adjacent_find(ticks.begin(), ticks.end(), std::greater_equal<>()) == ticks.end());
+  }
+  CHECK(Ticks(-1.7e308, 1.7e308, 5).empty());
 }
