@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base64.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "io/json_document.h"
@@ -18,43 +19,6 @@ constexpr int kVersion = 1;
 constexpr const char *kScene = "percale:scene", *kView = "percale:view", *kFrame = "percale:frame",
                      *kState = "percale:state";
 constexpr double kMostFrames = 1e8;
-constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-/// Base64 (RFC 4648): texts of a PNG hold no zeros. The file compresses them back to their size.
-std::string TextOfBytes(std::string_view bytes) {
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      three = three << 8 | (at + i < bytes.size() ? static_cast<unsigned char>(bytes[at + i]) : 0u);
-    for (std::size_t i = 0; i < 4; ++i) text += at + i > bytes.size() ? '=' : kDigits[three >> (18 - 6 * i) & 63];
-  }
-  return text;
-}
-
-std::optional<std::string> BytesOfText(std::string_view text) {
-  if (text.size() % 4 != 0) return std::nullopt;
-  std::uint8_t values[256];
-  std::fill(std::begin(values), std::end(values), std::uint8_t{64});
-  for (std::size_t i = 0; i < kDigits.size(); ++i) values[static_cast<unsigned char>(kDigits[i])] = std::uint8_t(i);
-  const std::size_t padding = text.size() - (text.find_last_not_of('=') + 1);
-  if (padding > 2) return std::nullopt;
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  for (std::size_t at = 0; at < text.size(); at += 4) {
-    std::uint32_t three = 0;
-    for (std::size_t i = at; i < at + 4; ++i) {
-      const bool pads = i >= text.size() - padding;
-      const std::uint32_t value = pads ? 0u : values[static_cast<unsigned char>(text[i])];
-      if (value > 63) return std::nullopt;
-      three = three << 6 | value;
-    }
-    for (int shift = 16; shift >= 0; shift -= 8) bytes += static_cast<char>(three >> shift & 255);
-  }
-  bytes.resize(bytes.size() - padding);
-  return bytes;
-}
 
 std::string FormatView(const View& view) {
   std::string text = "{\"version\":" + std::to_string(kVersion) +
@@ -188,7 +152,8 @@ std::vector<PngText> DescribePicture(const Scene& scene, const View& view, int f
   seen.camera = view.camera.Settings();
   std::vector<PngText> texts = {
       {kScene, FormatScene(seen)}, {kView, FormatView(view)}, {kFrame, std::to_string(frame)}};
-  if (state && state->Bytes() <= kMostStateInPicture) texts.push_back({kState, TextOfBytes(FormatCheckpoint(*state))});
+  // Texts of a PNG hold no zeros. The file compresses base64 back to the size of the bytes.
+  if (state && state->Bytes() <= kMostStateInPicture) texts.push_back({kState, ToBase64(FormatCheckpoint(*state))});
   return texts;
 }
 
@@ -225,7 +190,7 @@ Result<std::optional<ViewFile>> ReadPictureView(const std::filesystem::path& fil
     return fail("its percale:frame is damaged: expected a whole number >= 0, got " + Quote(*frameText, 40));
   opened.frame = static_cast<int>(*frame);
   if (stateText) {
-    const std::optional<std::string> bytes = BytesOfText(*stateText);
+    const std::optional<std::string> bytes = FromBase64(*stateText);
     if (!bytes) return fail("its percale:state is damaged: expected base64");
     Result<WorldState> state = ParseCheckpoint(*bytes, name + " (its state)");
     if (!state) return state.diagnostics();

@@ -5,6 +5,7 @@
 
 #include "apps/cli/html.h"
 #include "apps/cli/session.h"
+#include "core/base64.h"
 #include "core/text.h"
 
 namespace percale::cli {
@@ -96,7 +97,7 @@ std::string FormatFigure(const ShownFigure& shown, int width, int height) {
   const Figure& figure = *shown.figure;
   std::string html =
       Text("<figure id=\"figure-%d\">\n<img width=\"%d\" height=\"%d\" alt=\"", figure.number, width, height) +
-      EscapeHtml(figure.caption) + "\" src=\"data:image/png;base64," + Base64(shown.png) + "\">\n";
+      EscapeHtml(figure.caption) + "\" src=\"data:image/png;base64," + ToBase64(shown.png) + "\">\n";
   html += Text("<figcaption><b>Figure %d.</b> ", figure.number) + EscapeHtml(figure.caption) + "\n<dl>\n";
   const auto line = [&](const std::string& name, const std::string& value) {
     html += Element("dt", name) + Element("dd", value) + "\n";
