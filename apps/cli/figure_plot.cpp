@@ -5,6 +5,7 @@
 
 #include "apps/cli/html.h"
 #include "apps/cli/session.h"
+#include "render/ticks.h"
 
 namespace percale::cli {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 // The picture, in units of its own [pixel at full size].
 constexpr double kWidth = 640, kHeight = 400;
 constexpr double kLeft = 74, kRight = 620, kTop = 62, kBottom = 346;
+constexpr int kMostSteps = 8;  // between the numbers of an axis
 
 /// An axis between two places of the picture.
 class Scale {
@@ -37,21 +39,16 @@ class Scale {
   }
 
   std::vector<double> Ticks() const {
+    if (!logarithmic_) return percale::Ticks(low_, high_, kMostSteps);
     std::vector<double> ticks;
-    if (logarithmic_) {
-      const int step = std::max(1, int(std::ceil((high_ - low_) / 8)));  // decades
-      const bool few = high_ - low_ < 2;
-      for (int power = int(std::floor(low_)); power <= high_; ++power) {
-        for (const double part : {1.0, 2.0, 5.0}) {
-          const double at = power + std::log10(part);
-          if (at >= low_ && at <= high_ && power % step == 0 && (few || part == 1)) ticks.push_back(std::pow(10, at));
-        }
+    const int step = std::max(1, int(std::ceil((high_ - low_) / kMostSteps)));  // decades
+    const bool few = high_ - low_ < 2;
+    for (int power = int(std::floor(low_)); power <= high_; ++power) {
+      for (const double part : {1.0, 2.0, 5.0}) {
+        const double at = power + std::log10(part);
+        if (at >= low_ && at <= high_ && power % step == 0 && (few || part == 1)) ticks.push_back(std::pow(10, at));
       }
-      return ticks;
     }
-    const double rough = (high_ - low_) / 5, decade = std::pow(10, std::floor(std::log10(rough)));
-    const double step = decade * (rough < 1.5 * decade ? 1 : rough < 3.5 * decade ? 2 : rough < 7.5 * decade ? 5 : 10);
-    for (double k = std::ceil(low_ / step); k * step <= high_ + 1e-9 * step; ++k) ticks.push_back(k * step);
     return ticks;
   }
 
