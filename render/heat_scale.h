@@ -19,6 +19,7 @@ struct QuantityInfo {
   std::string_view label;  ///< "Greatest stretch".
   std::string_view unit;   ///< "m/s"; empty for plain numbers.
 };
+/// How the quantity is named.
 const QuantityInfo& Describe(Quantity quantity);
 /// All names, in the order of Quantity: "off" first.
 std::span<const std::string_view> QuantityNames();
@@ -61,7 +62,9 @@ Rgb HeatColor(double share);
 /// shrinks only when the value leaves much of it unused.
 class SteadySpan {
  public:
+  /// `least` > 0: the span to begin with.
   explicit SteadySpan(double least) : least_(least), span_(least) {}
+  /// Takes the next value >= 0; returns the span, at least `least`.
   double Update(double value);
 
  private:

@@ -31,6 +31,7 @@ struct OverlayInfo {
   std::string_view help;
   bool Overlays::*shown;
 };
+/// In the order in which they are listed to people.
 std::span<const OverlayInfo> AllOverlays();
 
 /// A line of that length [m] from each vertex along its normal.

@@ -18,6 +18,7 @@
 
 namespace percale {
 
+/// Where the values of a shader in that folder are kept.
 std::filesystem::path ShaderValuesFile(const std::filesystem::path& folder, const std::string& shader);
 
 /// Reads such a file; none gives no values. Fails on what is no such file, with the place. A value that does

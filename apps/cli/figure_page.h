@@ -30,6 +30,7 @@ struct FigurePage {
   std::optional<Findings> findings;  ///< None: not all figures and studies are there.
 };
 
+/// The page as HTML that needs no other file: style, pictures and plots are in it.
 std::string FormatPage(const FigurePage& page);
 
 /// Figures, claims and tables as JSON, for programs.

@@ -32,6 +32,8 @@ struct Plot {
   std::vector<Series> series;  ///< At most six have a colour of their own.
 };
 
+/// The plot as an <svg> element of class "plot", with a legend where there are several series. Its title and
+/// labels may be any text. Without points it has axes alone.
 std::string FormatSvg(const Plot& plot);
 
 }  // namespace percale::cli

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cctype>
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <iterator>

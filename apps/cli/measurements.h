@@ -20,18 +20,20 @@ struct Table {
   std::vector<std::string> columns;       ///< Names.
   std::vector<std::vector<double>> rows;  ///< As long as `columns` each.
 
-  /// The column must be there.
-  std::vector<double> Column(std::string_view column) const;
+  // The column must be there, and the row.
+  std::vector<double> Column(std::string_view column) const;  ///< One value per row.
   double At(std::size_t row, std::string_view column) const;
 };
 
-/// Keeps a table as CSV. `key`, one line, says what it was measured from.
+/// Keeps a table as CSV. `key`, one line, says what it was measured from. Fails when the file cannot be written;
+/// an older one then stays.
 Status WriteTable(const std::filesystem::path& file, const std::string& key, const Table& table);
 /// The table of a file; nothing where it is missing, damaged, or was measured from something else.
 std::optional<Table> ReadTable(const std::filesystem::path& file, const std::string& key);
 
 /// Positions, cloth by cloth.
 using Shape = std::vector<std::vector<Vec3>>;
+/// A copy of where all points are now [m].
 Shape ShapeOf(const World& world);
 
 /// How a simulation went: a row for the start and for each frame, with the columns `time` [s],

@@ -55,7 +55,8 @@ std::filesystem::path DefaultOutput(const Session& session, const char* extensio
 /// Fails early where a file could not be written, before minutes of simulation. Returns the exit code.
 int CheckWritable(const std::filesystem::path& file);
 
-/// Runs the World by `plan` into a video. Returns the exit code; `path` is where the film is.
+/// Runs the World as long as the options say, else `defaultFrames` frames, into a video: an mp4 file, or a folder
+/// of numbered pictures (render/video.h). Prints where it is. Returns the exit code.
 int Film(Studio& studio, World& world, const Options& options, const Session& session,
          const std::filesystem::path& file, int defaultFrames);
 
