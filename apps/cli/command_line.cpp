@@ -195,7 +195,7 @@ class Builder {
     Call(app, "--heat-map", "Colours the cloths by " + List(QuantityNames(), "or") + ", with a legend", "NAME",
          "Picture", [this](const std::string& text) {
            const std::size_t at = Find("--heat-map", "heat map", text, QuantityNames());
-           options_.heatMap.quantity = static_cast<Quantity>(at);
+           options_.heatMap = static_cast<Quantity>(at);
          });
     Call(app, "--heat-range", "The values of the first and the last colour, such as 1,1.1; default: follows the values",
          "LOW,HIGH", "Picture", [this](const std::string& text) {
@@ -205,7 +205,7 @@ class Builder {
            const double low = Number("--heat-range", parts[0], -1e30, 1e30, expected);
            const double high = Number("--heat-range", parts[1], -1e30, 1e30, expected);
            if (low >= high) Refuse("--heat-range", expected, text);
-           options_.heatMap.range = ValueRange{low, high};
+           options_.heatRange = ValueRange{low, high};
          });
     std::vector<std::string_view> overlays;
     for (const OverlayInfo& overlay : AllOverlays()) overlays.push_back(overlay.name);

@@ -368,8 +368,9 @@ ShownFigure Gallery::Show(const Drawing& drawing) const {
   for (const std::string& assignment : drawing.shot.set) shown.parameters.push_back(ParameterText(assignment));
   for (const UniformOption& uniform : drawing.shot.uniforms)
     shown.parameters.emplace_back(uniform.name, Text("%g (shader)", double(uniform.numbers[0])));
-  if (drawing.shot.longitudes != standard.longitudes)
-    shown.parameters.emplace_back("sphere", Text("%d x %d", drawing.shot.latitudes, drawing.shot.longitudes));
+  if (drawing.shot.longitudes)
+    shown.parameters.emplace_back("sphere",
+                                  Text("%d x %d", drawing.view.sphereLatitudes, drawing.view.sphereLongitudes));
   shown.course = measured_.at(figure.course());
   shown.course.rows.resize(std::size_t(figure.frame) + 1);
   shown.png = FileBytes(folder_ / FigureFile(figure.number));

@@ -55,17 +55,17 @@ struct Options {
   std::string csv;           ///< simulate --csv; empty: none.
   std::optional<int> frame;  ///< Of shot.
 
-  int latitudes = 40;           ///< -a
-  int longitudes = 40;          ///< -o with a whole number.
-  int width = 1024;             ///< [pixel]
-  int height = 800;             ///< [pixel]
-  bool sizeGiven = false;       ///< --size
-  std::optional<int> samples;   ///< Per pixel; none: 4, or for the viewer what the card does well.
-  double framesPerSecond = 30;  ///< Of a video.
-  std::string shader;           ///< Empty: the scene's.
+  std::optional<int> latitudes, longitudes;  ///< -a, and -o with a whole number; none: 40, or the picture's.
+  int width = 1024;                          ///< [pixel]
+  int height = 800;                          ///< [pixel]
+  bool sizeGiven = false;                    ///< --size
+  std::optional<int> samples;                ///< Per pixel; none: 4, or for the viewer what the card does well.
+  double framesPerSecond = 30;               ///< Of a video.
+  std::string shader;                        ///< Empty: the scene's.
   std::vector<UniformOption> uniforms;
   bool shaderDefaults = false;                         ///< Leave alone what the viewer has kept beside the shaders.
-  HeatMapSettings heatMap;                             ///< --heat-map, --heat-range
+  std::optional<Quantity> heatMap;                     ///< --heat-map; none: off, or the picture's.
+  std::optional<ValueRange> heatRange;                 ///< --heat-range
   Overlays overlays;                                   ///< --overlay
   std::optional<double> azimuth, elevation, distance;  ///< --camera [degree, degree, m]
   std::optional<std::vector<double>> target;           ///< --target, three numbers [m]

@@ -28,10 +28,10 @@ View MakeView(const Options& options, const Scene& scene, const std::optional<pe
   View view = picture.value_or(plain);
   view.look = plain.look;
   view.camera = plain.camera;
-  const Options unsaid;
-  if (!picture || options.latitudes != unsaid.latitudes) view.sphereLatitudes = options.latitudes;
-  if (!picture || options.longitudes != unsaid.longitudes) view.sphereLongitudes = options.longitudes;
-  if (!picture || options.heatMap.quantity != unsaid.heatMap.quantity) view.heatMap = options.heatMap;
+  if (options.latitudes) view.sphereLatitudes = *options.latitudes;
+  if (options.longitudes) view.sphereLongitudes = *options.longitudes;
+  if (options.heatMap) view.heatMap = {*options.heatMap, {}};  // another quantity has another range
+  if (options.heatRange) view.heatMap.range = options.heatRange;
   for (const OverlayInfo& overlay : AllOverlays()) view.overlays.*overlay.shown |= options.overlays.*overlay.shown;
   view.wireframe |= options.wireframe;
   return view;

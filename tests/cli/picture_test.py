@@ -96,6 +96,16 @@ class Shot(ProgramTest):
             for b in pictures[:i]:
                 self.assertNotEqual(a, b)
 
+    def test_options_go_before_what_a_picture_tells(self):
+        scene = [ROOT / "scene/sphere.json", "--size", "96x80", "--frame", 10]
+        sphere = ["-a", 40, "-o", 40]
+        self.shot(*scene, "-a", 9, "-o", 9, "--heat-map", "stretch", name="told.png")
+        told = self.folder / "told.png"
+        for options in ([*sphere, "--heat-map", "off"], [*sphere, "--heat-map", "stretch", "--heat-range", "1,3"]):
+            self.assertEqual(self.shot(told, "--size", "96x80", *options)[2], self.shot(*scene, *options)[2])
+        self.assertEqual(self.shot(told, "--size", "96x80", "--heat-range", "1,3")[2],
+                         self.shot(*scene, "-a", 9, "-o", 9, "--heat-map", "stretch", "--heat-range", "1,3")[2])
+
     def test_heat_maps_and_overlays(self):
         base = [self.scene(), "--size", "160x120", "--frame", 10]
         plain = self.shot(*base)[2]
