@@ -59,10 +59,12 @@ int ApplyUniforms(const Options& options, std::span<const ShaderParameter> param
                  std::to_string(uniform.numbers.size()));
       return kUsage;
     }
+    const bool whole = found->type == ShaderParameter::Type::Int || found->type == ShaderParameter::Type::Bool;
     for (const float number : uniform.numbers) {
-      if (number < found->min || number > found->max) {
-        PrintError("--uniform: " + found->name + ": expected a number " + FormatNumber(double(found->min)) + ".." +
-                   FormatNumber(double(found->max)) + ", got " + FormatNumber(double(number)));
+      if (number < found->min || number > found->max || (whole && number != std::floor(number))) {
+        PrintError("--uniform: " + found->name + ": expected a " + (whole ? "whole " : "") + "number " +
+                   FormatNumber(double(found->min)) + ".." + FormatNumber(double(found->max)) + ", got " +
+                   FormatNumber(double(number)));
         return kUsage;
       }
     }

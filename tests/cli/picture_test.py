@@ -106,6 +106,11 @@ class Shot(ProgramTest):
         self.assertEqual(self.shot(told, "--size", "96x80", "--heat-range", "1,3")[2],
                          self.shot(*scene, "-a", 9, "-o", 9, "--heat-map", "stretch", "--heat-range", "1,3")[2])
 
+    def test_a_switch_is_no_fraction(self):
+        for value in ("bands=2.5", "axis=0.5", "lit=0.5", "bands=4"):
+            done = self.run_program("shot", self.scene(), "--shader", "Flag", "--uniform", value, code=2)
+            self.assertIn(f"u_{value.split('=')[0]}: expected a whole number", done.stderr)
+
     def test_heat_maps_and_overlays(self):
         base = [self.scene(), "--size", "160x120", "--frame", 10]
         plain = self.shot(*base)[2]
