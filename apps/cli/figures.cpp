@@ -21,6 +21,7 @@
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "percale/parameters.h"
+#include "render/shader_values.h"
 
 namespace percale::cli {
 namespace {
@@ -364,6 +365,9 @@ ShownFigure Gallery::Show(const Drawing& drawing) const {
   const Options standard;
   if (options_.width != standard.width || options_.height != standard.height)
     shown.command += Text(" --size %dx%d", options_.width, options_.height);
+  // What the viewer has kept of the shader would make another picture.
+  std::error_code ignored;
+  if (fs::exists(ShaderValuesFile(root_ / "shaders", shown.shader), ignored)) shown.command += " --shader-defaults";
   shown.command += " -o " + FigureFile(figure.number);
   for (const std::string& assignment : drawing.shot.set) shown.parameters.push_back(ParameterText(assignment));
   for (const UniformOption& uniform : drawing.shot.uniforms)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 import unittest
 
+from picture_test import read_png
 from program import PERCALE, ROOT, ProgramTest
 
 
@@ -50,9 +52,17 @@ class SomeFigures(ProgramTest):
         shader = self.folder / "shaders/Wireframe.frag"
         shader.write_text(shader.read_text() + "// changed\n")
         self.assertIn("1 of them drawn now", self.run_program(*only).stdout)
-        # Values that the viewer keeps are not used here.
-        self.write("shaders/Wireframe.json", {"u_width": 2})
+
+    def test_kept_shader_values_are_not_used(self):
+        self.copy_root()
+        only = ("figures", "-r", ".", "--size", "64x50", "--only", "48", "-o", "out")
+        self.run_program(*only)
+        self.write("shaders/Flag.json", {"u_bands": 3})
         self.assertIn("0 of them drawn now", self.run_program(*only).stdout)
+        command = json.loads((self.folder / "out/figures.json").read_text())["figures"][0]["command"]
+        subprocess.run([os.path.abspath(PERCALE), *shlex.split(command)[1:], "-r", "."], cwd=self.folder, check=True,
+                       env=self.environment, stdout=subprocess.PIPE)
+        self.assertEqual(read_png(self.folder / "figure_48.png")[:3], read_png(self.folder / "out/figure_48.png")[:3])
 
     @unittest.skipUnless(sys.platform.startswith("linux"), "needs programs that run with bytes appended")
     def test_a_changed_program_is_noticed(self):
