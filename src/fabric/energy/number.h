@@ -42,7 +42,8 @@ Symmetric2<T> ClampedEigenvalues(const Symmetric2<T>& s, T floor) {
   return {newMean + scale * deviator, newMean - scale * deviator, scale * s.c};
 }
 
-/// Where entry (row, column), row <= column, of a symmetric 6 x 6 matrix is among its 21 rows of the upper triangle.
+/// Where entry (row, column), row <= column, of a symmetric 6 x 6 matrix is among the 21 of its upper triangle, row by
+/// row.
 constexpr int Upper6(int row, int column) {
   return row * (11 - row) / 2 + column;
 }
