@@ -330,7 +330,7 @@ struct SetFold {
 };
 
 /// Rest angle after a step that ended at `angle`: it follows until the elastic part is at the yield, which has grown
-/// meanwhile. The return mapping of Simo and Hughes 1998, "Computational inelasticity", box 1.4.
+/// meanwhile. The return mapping of Simo and Hughes 1998, "Computational inelasticity", chapter 1.
 template <class T>
 SetFold<T> YieldedRestAngle(T angle, const SetFold<T>& fold, const FoldYield<T>& yield) {
   const T elastic = angle - fold.rest;

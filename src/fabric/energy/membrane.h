@@ -158,7 +158,7 @@ inline bool IsPositiveDefinite(const StVenantKirchhoff<double>& law) {
 
 /// Force per width over strain [N/m], for small strain, of a strip cut at `angle` [rad] from the warp: 1/K(angle) is
 /// the compliance S = C⁻¹ turned, S11 c⁴ + (2 S12 + S33) c² s² + S22 s⁴ (Jones 1999, "Mechanics of composite
-/// materials", eq. 2.97).
+/// materials", chapter 2).
 inline double StripStiffness(const StVenantKirchhoff<double>& law, double angle) {
   const double det = law.c11 * law.c22 - law.c12 * law.c12;
   const double c = std::cos(angle), s = std::sin(angle), cc = c * c, ss = s * s;
@@ -231,10 +231,10 @@ MembraneTangent<T> Tangent(const StableNeoHookean<T>& law, const DeformationGrad
       {law.mu + byArea * Dot(f.v, f.v), law.mu + byArea * Dot(f.u, f.u), -byArea * Dot(f.u, f.v)}, floor);
 
   // twist P+ + flip P-, with P± = ((1 - n nᵀ) ± D)/2 and D_uv w = w x n.
-  const T mean = half * (twist + flip), swirl = half * (twist - flip);
+  const T mean = half * (twist + flip), spin = half * (twist - flip);
   const Matrix3<T> nn = Outer(n, n);
   const Matrix3<T> crossN{
-      {zero, n.z * swirl, -n.y * swirl, -n.z * swirl, zero, n.x * swirl, n.y * swirl, -n.x * swirl, zero}};
+      {zero, n.z * spin, -n.y * spin, -n.z * spin, zero, n.x * spin, n.y * spin, -n.x * spin, zero}};
   const Matrix3<T> diagonal = Diagonal(mean);
   MembraneTangent<T> h{diagonal + nn * (across.a - mean), crossN + nn * across.c, diagonal + nn * (across.b - mean)};
   // What the plane (f+, f-) differs from that.
