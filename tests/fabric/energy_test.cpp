@@ -780,6 +780,82 @@ TEST_CASE("on a jittered mesh a quadratic surface has nearly a plate's energy") 
   }
 }
 
+TEST_CASE("fitted bending is exact for quadratic surfaces on any mesh, and equals the other on a lattice") {
+  SplitMix64 random(18);
+  const auto fitted = [](const Patch& patch, const bool(&present)[3]) {
+    const auto& q = patch.material;
+    return MakeFittedBendingMatrix(kStiffness, {q[0], q[1], q[2]}, {q[3], q[4], q[5]}, present);
+  };
+  for (const Corners& lattice : {Corners{{{0, 0}, {1, 0}, {1, 1}}}, Corners{{{0.1, -0.2}, {0.9, 0.3}, {0.2, 1.4}}}}) {
+    for (int free = 0; free < 8; ++free) {
+      const bool present[3] = {(free & 1) == 0, (free & 2) == 0, (free & 4) == 0};
+      const Patch patch = LatticePatch(lattice, kStiffness, {present[0], present[1], present[2]});
+      const BendingMatrix<double> fit = fitted(patch, present);
+      for (int k = 0; k < 3; ++k) {
+        CHECK(std::fabs(fit.diagonal[k] - patch.matrix.diagonal[k]) <= 1e-12 * kStiffness.b11);
+        CHECK(std::fabs(fit.next[k] - patch.matrix.next[k]) <= 1e-12 * kStiffness.b11);
+      }
+    }
+  }
+  for (int i = 0; i < kStates; ++i) {
+    const auto near = [&](double u, double v) {
+      return MaterialPoint{u + Within(random, -0.15, 0.15), v + Within(random, -0.15, 0.15)};
+    };
+    Patch patch = MakePatch({near(0, 0), near(1, 0), near(1, 1), near(2, 1), near(0, 1), near(0, -1)}, kStiffness);
+    patch.matrix = fitted(patch, {true, true, true});
+    const double small = 1e-5, k11 = small * Within(random, -1, 1), k22 = small * Within(random, -1, 1);
+    const double k12 = small * Within(random, -1, 1);
+    const double expected =
+        Area(patch.material[0], patch.material[1], patch.material[2]) * PlateEnergy(kStiffness, k11, k22, k12);
+    CHECK(Energy(patch, Raised(patch, [&](const MaterialPoint& p) {
+                   return 0.5 * (k11 * p.u * p.u + k22 * p.v * p.v) + k12 * p.u * p.v;
+                 })) == doctest::Approx(expected).epsilon(1e-8));
+  }
+}
+
+TEST_CASE("fitted bending is finite, positive and bounded where the six points determine no surface") {
+  const double third = 2 * std::numbers::pi / 3, wide = 1;
+  const auto onCircle = [](double angle) { return MaterialPoint{std::cos(angle), std::sin(angle)}; };
+  for (const double off : {0.0, 1e-9, 1e-3, 0.1}) {  // six points of a regular hexagon, but for `off`
+    const MaterialPoint p[3] = {onCircle(0), onCircle(third), onCircle(2 * third)};
+    const MaterialPoint across[3] = {{-1 - off, 0}, onCircle(2.5 * third), onCircle(0.5 * third)};
+    double areas[3];
+    for (int k = 0; k < 3; ++k) areas[k] = Area(p[(k + 1) % 3], p[(k + 2) % 3], across[k]);
+    const BendingMatrix<double> m = MakeFittedBendingMatrix(kStiffness, p, across, {true, true, true});
+    const BendingMatrix<double> plain = MakeBendingMatrix(kStiffness, p, areas);
+    Eigen::Matrix3d dense;
+    dense << m.diagonal[0], m.next[0], m.next[2], m.next[0], m.diagonal[1], m.next[1], m.next[2], m.next[1],
+        m.diagonal[2];
+    const Eigen::Vector3d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(dense).eigenvalues();
+    CHECK(eigenvalues(0) > 0);
+    CHECK(eigenvalues(2) <= 1.0001 * kFitCap * (plain.diagonal[0] + plain.diagonal[1] + plain.diagonal[2]));
+  }
+  for (const double width : {0.0, 1e-300, 1e-12}) {
+    for (const bool all : {true, false}) {
+      const BendingMatrix<double> m = MakeFittedBendingMatrix(
+          kStiffness, {{0, 0}, {wide, 0}, {0.5, width}}, {{0.7, 1}, {0.2, width}, {0.5, -width}}, {all, true, true});
+      for (int k = 0; k < 3; ++k) CHECK((std::isfinite(m.diagonal[k]) && std::isfinite(m.next[k])));
+    }
+  }
+}
+
+TEST_CASE("a triangle across a seam unfolds to where it would be without") {
+  SplitMix64 random(19);
+  for (int i = 0; i < kStates; ++i) {
+    const MaterialPoint from{0, 0}, to{1.3, 0.4}, corner{0.2, 0.9}, apex{Within(random, 0, 2), -1};
+    const double angle = Within(random, -3, 3), mirror = i % 2 == 0 ? 1 : -1;
+    const auto panel = [&](const MaterialPoint& p) {
+      return MaterialPoint{5 + std::cos(angle) * p.u - mirror * std::sin(angle) * p.v,
+                           -2 + std::sin(angle) * p.u + mirror * std::cos(angle) * p.v};
+    };
+    const MaterialPoint back = UnfoldedApex(from, to, corner, panel(from), panel(to), panel(apex));
+    CHECK(back.u == doctest::Approx(apex.u));
+    CHECK(back.v == doctest::Approx(apex.v));
+    const MaterialPoint other = UnfoldedApex(to, from, corner, panel(to), panel(from), panel(apex));
+    CHECK(other.v == doctest::Approx(apex.v));
+  }
+}
+
 TEST_CASE("the quadratic jump of slope is 2 sin(θ/2) long while the hinge is not stretched, and forgets affine maps") {
   SplitMix64 random(16);
   for (int i = 0; i < kStates; ++i) {
@@ -844,12 +920,13 @@ TEST_CASE("bending in float agrees with double, and two side by side with each a
     const BendingHessian<double> tH = GaussNewton(patch.matrix, threeH), tG = GaussNewton(patch.matrix, threeG);
     for (int k = 0; k < 21; ++k) CHECK(Same(t2.block[k], tH.block[k], tG.block[k]));
 
-    // Far from the origin too, up to what the coordinates are rounded by.
+    // Far from the origin too, where float has the coordinates exactly.
     QuadraticBending<float> qF;
     const QuadraticBending<double> q = QuadraticOf(patch);
     for (int k = 0; k < 21; ++k) qF.entry[k] = static_cast<float>(q.entry[k]);
     Points far;
-    for (const V& p : x) far.push_back(ToDouble(ToFloat(p + V{100, 0, 0})));
+    const auto round = [](double a) { return std::round(a * 65536) / 65536; };  // a float below 256
+    for (const V& p : x) far.push_back({round(100 + p.x), round(p.y), round(p.z)});
     const BendingGradient<double> gradient = QuadraticGradientOf(q, far);
     const BendingGradient<float> gradientF = QuadraticGradient(
         qF, {ToFloat(far[0]), ToFloat(far[1]), ToFloat(far[2]), ToFloat(far[3]), ToFloat(far[4]), ToFloat(far[5])});

@@ -17,8 +17,8 @@
 /// the legs have κ h each and the diagonal -κ h/√2: 9/2 D κ². So the stiffness depends on the direction of the mesh,
 /// and a sum of squares of single angles has no place for Poisson's ratio, which multiplies K11 K22.
 ///
-/// Elsewhere the energy is that of a surface with noise on its curvature, hence above the plate's: by 1 to 19 % on a
-/// square grid jittered by a fifth of its spacing, and finer meshes of that kind do not lessen it.
+/// Elsewhere the energy is that of a surface with noise on its curvature, hence above the plate's, and finer meshes of
+/// the kind do not lessen it: for them there is MakeFittedBendingMatrix, of the same form.
 ///
 /// A boundary edge, or one with more than two triangles, has no angle. What it would be is left free: it is minimised
 /// out of E_T (the Schur complement), which is the natural boundary condition, no moment across a free edge.
@@ -259,6 +259,109 @@ HingeWeights<T> MakeHingeWeights(const Vector3<double>& x0, const Vector3<double
   }
   return {{T(c[0]), T(c[1]), T(c[2]), T(c[3])}};
 }
+
+// --- Irregular meshes ---
+
+/// The apex of a triangle across an edge, unfolded into our panel, where the two have material coordinates of their
+/// own, as at a seam. `from`, `to`, `corner` are ours; the others are its own, in the same order.
+inline MaterialPoint UnfoldedApex(const MaterialPoint& from, const MaterialPoint& to, const MaterialPoint& corner,
+                                  const MaterialPoint& itsFrom, const MaterialPoint& itsTo,
+                                  const MaterialPoint& itsApex) {
+  const double du = to.u - from.u, dv = to.v - from.v, eu = itsTo.u - itsFrom.u, ev = itsTo.v - itsFrom.v;
+  const double au = itsApex.u - itsFrom.u, av = itsApex.v - itsFrom.v, square = eu * eu + ev * ev;
+  if (!(square > 0)) return from;
+  const double side = du * (corner.v - from.v) - dv * (corner.u - from.u) > 0 ? -1 : 1;
+  const double foot = (au * eu + av * ev) / square, height = side * std::fabs(eu * av - ev * au) / square;
+  return {from.u + foot * du - height * dv, from.v + foot * dv + height * du};
+}
+
+namespace detail {
+
+/// Inverse of a symmetric 3 x 3 matrix without negative eigenvalues, its own eigenvalues at most `cap`. Cyclic Jacobi.
+inline void CappedInverse(double (&a)[3][3], double cap) {
+  double q[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int turn = 0; turn < 24; ++turn) {
+    const int i = turn % 3, j = (i + 1) % 3;
+    if (a[i][j] == 0) continue;
+    const double ratio = (a[j][j] - a[i][i]) / (2 * a[i][j]);  // the smaller of two angles, or it need not converge
+    const double tangent = std::copysign(1 / (std::fabs(ratio) + std::sqrt(1 + ratio * ratio)), ratio);
+    const double c = 1 / std::sqrt(1 + tangent * tangent), s = tangent * c;
+    for (int k = 0; k < 3; ++k) {
+      const double x = a[k][i], y = a[k][j], u = q[k][i], v = q[k][j];
+      a[k][i] = c * x - s * y, a[k][j] = s * x + c * y, q[k][i] = c * u - s * v, q[k][j] = s * u + c * v;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double x = a[i][k], y = a[j][k];
+      a[i][k] = c * x - s * y, a[j][k] = s * x + c * y;
+    }
+  }
+  const double inverse[3] = {1 / std::fmax(a[0][0], 1 / cap), 1 / std::fmax(a[1][1], 1 / cap),
+                             1 / std::fmax(a[2][2], 1 / cap)};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      a[i][j] = 0;
+      for (int k = 0; k < 3; ++k) a[i][j] += q[i][k] * inverse[k] * q[j][k];
+    }
+  }
+}
+
+}  // namespace detail
+
+/// How much stiffer than by the areas, measured by the trace, a fitted matrix may be.
+constexpr double kFitCap = 4;
+
+/// M_T for meshes that are no lattice. Through a triangle's six points goes one quadratic surface, whose angles are
+/// θ = t κ with t from the points alone; so κ = t⁻¹ θ, and M_T = A_T t⁻ᵀ B t⁻¹ is the plate's energy of any quadratic
+/// surface on any mesh. Written M_T = A_T (t B⁻¹ tᵀ)⁻¹ over the edges that have an angle, it is least over what these
+/// leave open, as at free edges. On a lattice it equals MakeBendingMatrix. (The fit is that of Grinspun et al. 2006,
+/// "Computing discrete shape operators on general meshes".) Six points on a conic, or nearly, determine no surface:
+/// there the eigenvalues are capped, and those triangles are softer than exact.
+/// Measured, plate of 40 x 40 squares jittered by 0.1, 0.2, 0.3 of their side, clamped, deflection under even load over
+/// that on the lattice: 1.000, 1.002, 1.009; by areas 0.982, 0.926, 0.829.
+/// `across[k]` is the point across edge k in the coordinates of `p` (UnfoldedApex), `present[k]` whether there is one.
+template <class T = double>
+BendingMatrix<T> MakeFittedBendingMatrix(const BendingStiffness& b, const MaterialPoint (&p)[3],
+                                         const MaterialPoint (&across)[3], const bool (&present)[3]) {
+  const auto twiceArea = [](const MaterialPoint& x, const MaterialPoint& y, const MaterialPoint& z) {
+    return std::fabs((y.u - x.u) * (z.v - x.v) - (z.u - x.u) * (y.v - x.v));
+  };
+  const double area = 0.5 * twiceArea(p[0], p[1], p[2]), det = b.b11 * b.b22 - b.b12 * b.b12;
+  const auto square = [](const MaterialPoint& x, const MaterialPoint& y) {
+    return (y.u - x.u) * (y.u - x.u) + (y.v - x.v) * (y.v - x.v);
+  };
+  if (!(area > 1e-9 * (square(p[0], p[1]) + square(p[1], p[2]) + square(p[2], p[0])))) return {};  // a line
+  double t[3][3] = {}, areas[3];
+  for (int k = 0; k < 3; ++k) {
+    const MaterialPoint corners[4] = {p[(k + 1) % 3], p[(k + 2) % 3], p[k], present[k] ? across[k] : p[k]};
+    areas[k] = 0.5 * twiceArea(corners[0], corners[1], corners[3]);
+    Vector3<double> x[4];
+    for (int i = 0; i < 4; ++i) x[i] = {corners[i].u - p[k].u, corners[i].v - p[k].v, 0};
+    const HingeWeights<double> c = MakeHingeWeights(x[0], x[1], x[2], x[3]);
+    for (int i = 0; i < 4; ++i) {
+      const double half = 0.5 * c.vertex[i];
+      t[k][0] += half * x[i].x * x[i].x, t[k][1] += half * x[i].y * x[i].y, t[k][2] += half * x[i].x * x[i].y;
+    }
+  }
+  double m[3][3];
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double inner =
+          b.b22 * t[i][0] * t[j][0] + b.b11 * t[i][1] * t[j][1] - b.b12 * (t[i][0] * t[j][1] + t[i][1] * t[j][0]);
+      m[i][j] = !present[i] || !present[j] ? 0 : (inner / det + t[i][2] * t[j][2] / b.b33) / area;
+    }
+  }
+  const BendingMatrix<double> lattice = MakeBendingMatrix(b, p, areas);
+  detail::CappedInverse(m, kFitCap * (lattice.diagonal[0] + lattice.diagonal[1] + lattice.diagonal[2]) + 1e-300);
+  BendingMatrix<T> result;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3;
+    if (present[k]) result.diagonal[k] = T(m[k][k]);
+    if (present[k] && present[l]) result.next[k] = T(m[k][l]);
+  }
+  return result;
+}
+
+// --- The energy of the quadratic jumps ---
 
 /// The constant matrix of ½ Σ M_ab ϑ_a·ϑ_b [N/m] over the six vertices, entry (i, j), i <= j, at Upper6(i, j).
 template <class T>
