@@ -2,82 +2,15 @@
 
 #include <doctest/doctest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
 #include "core/executor.h"
 #include "mesh/cloth_model.h"
 #include "springs/kernels.h"
 #include "springs/springs_engine.h"
+#include "tests/count_allocations.h"
 #include "tests/springs/scenes.h"
 #include "world/measure.h"
-
-namespace {
-
-std::atomic<bool> counting{false};
-std::atomic<int> allocations{0};
-
-void* Allocate(std::size_t size, std::size_t alignment) {
-  if (counting) ++allocations;
-  void* memory = nullptr;
-  if (alignment <= alignof(std::max_align_t)) {
-    memory = std::malloc(size > 0 ? size : 1);
-  } else {
-    memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-  }
-  if (!memory) throw std::bad_alloc();
-  return memory;
-}
-
-template <class Function>
-int CountAllocations(Function&& function) {
-  allocations = 0;
-  counting = true;
-  function();
-  counting = false;
-  return allocations;
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return Allocate(size, 1);
-}
-void* operator new[](std::size_t size) {
-  return Allocate(size, 1);
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return Allocate(size, static_cast<std::size_t>(alignment));
-}
-void* operator new[](std::size_t size, std::align_val_t alignment) {
-  return Allocate(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
 
 using namespace percale;
 using namespace percale::test;
