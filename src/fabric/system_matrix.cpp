@@ -1,0 +1,354 @@
+#include "fabric/system_matrix.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "fabric/real4.h"
+
+namespace percale::fabric {
+namespace {
+
+/// Pivots of a diagonal block below this share of its trace are rounding of floats.
+constexpr double kLeastPivot = 1e-7;
+
+/// Calls store(row, H x at that row) for each row of a range.
+template <class Store>
+inline void ForRows(const BlockPattern& pattern, const Real* __restrict blocks,
+                    const std::int32_t* __restrict restFirst, const std::int32_t* __restrict restColumn,
+                    const Real* __restrict restValue, const ExtraRows& extra, const Real* __restrict x, int begin,
+                    int end, Store&& store) {
+  const std::int32_t* __restrict first = pattern.first.data();
+  const std::int32_t* __restrict column = pattern.column.data();
+  for (int row = begin; row < end; ++row) {
+    Real4 s = Real4::Zero();
+    for (std::int32_t k = first[row]; k < first[row + 1]; ++k) {
+      s += Product(blocks + 9 * static_cast<std::size_t>(k), x + 3 * static_cast<std::size_t>(column[k]));
+    }
+    for (std::int32_t k = restFirst[row]; k < restFirst[row + 1]; ++k) {
+      s += Real4::Load(x + 3 * static_cast<std::size_t>(restColumn[k])) * restValue[k];
+    }
+    if (extra.any) {
+      for (std::int32_t k = extra.begin[row]; k < extra.end[row]; ++k) {
+        s += Product(&extra.block[9 * static_cast<std::size_t>(k)], x + 3 * static_cast<std::size_t>(extra.column[k]));
+      }
+    }
+    store(row, s);
+  }
+}
+
+/// Inverts a symmetric block.
+void Invert(const std::array<Real, 9>& block, Real* inverse) {
+  const double a = block[0], b = block[4], c = block[8];
+  const double d = .5 * (block[1] + block[3]), e = .5 * (block[2] + block[6]), f = .5 * (block[5] + block[7]);
+  const double trace = a + b + c;
+  const double minor = a * b - d * d;
+  const double xx = b * c - f * f, xy = e * f - d * c, xz = d * f - b * e;
+  const double determinant = a * xx + d * xy + e * xz;
+  const double least = kLeastPivot * trace;
+  if (a > least && minor > least * a && determinant > least * minor && std::isfinite(determinant)) {
+    const double s = 1 / determinant;
+    const double yz = d * e - a * f;
+    const double symmetric[9] = {xx, xy, xz, xy, a * c - e * e, yz, xz, yz, minor};
+    for (int k = 0; k < 9; ++k) inverse[k] = static_cast<Real>(s * symmetric[k]);
+    return;
+  }
+  double scale = trace;
+  if (!(scale > 0)) {
+    for (const Real entry : block) scale = std::max(scale, std::abs(static_cast<double>(entry)));
+  }
+  for (int k = 0; k < 9; ++k) inverse[k] = 0;
+  for (const int k : {0, 4, 8}) inverse[k] = static_cast<Real>(scale > 0 && std::isfinite(scale) ? 1 / scale : 1);
+}
+
+template <class T, class Allocator>
+std::size_t Bytes(const std::vector<T, Allocator>& array) {
+  return array.capacity() * sizeof(T);
+}
+
+template <class Array>
+void Grow(Array& array, std::size_t size) {
+  if (array.size() < size) array.resize(std::max(size, array.size() + array.size() / 2));
+}
+
+}  // namespace
+
+std::int32_t BlockPattern::Find(std::int32_t row, std::int32_t columnSought) const {
+  const auto begin = column.begin() + first[row], end = column.begin() + first[row + 1];
+  const auto found = std::lower_bound(begin, end, columnSought);
+  return found != end && *found == columnSought ? static_cast<std::int32_t>(found - column.begin()) : -1;
+}
+
+BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std::span<const Edge> morePairs) {
+  std::vector<std::vector<std::int32_t>> neighbours(vertices);
+  const auto couple = [&](std::int32_t a, std::int32_t b) {
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+  };
+  for (int v = 0; v < vertices; ++v) neighbours[v].push_back(v);
+  for (const Triangle& t : triangles) couple(t.a, t.b), couple(t.b, t.c), couple(t.c, t.a);
+  for (const Edge& pair : morePairs) couple(pair.a, pair.b);
+
+  BlockPattern pattern;
+  pattern.first.push_back(0);
+  for (std::vector<std::int32_t>& row : neighbours) {
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.first.push_back(static_cast<std::int32_t>(pattern.column.size()));
+  }
+  return pattern;
+}
+
+std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
+                                                        std::span<const Triangle> triangles) {
+  std::vector<std::array<std::int32_t, 9>> blocks;
+  blocks.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    const std::int32_t corners[3] = {t.a, t.b, t.c};
+    std::array<std::int32_t, 9>& of = blocks.emplace_back();
+    for (int k = 0; k < 9; ++k) of[k] = pattern.Find(corners[k / 3], corners[k % 3]);
+  }
+  return blocks;
+}
+
+ScalarMatrix MakeScalarMatrix(int rows, std::span<const ScalarEntry> entries) {
+  std::vector<std::vector<std::pair<std::int32_t, double>>> byRow(rows);
+  for (const ScalarEntry& entry : entries) byRow[entry.row].push_back({entry.column, entry.value});
+  ScalarMatrix matrix;
+  matrix.first.push_back(0);
+  for (auto& row : byRow) {
+    std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      if (k > 0 && row[k].first == row[k - 1].first) {
+        matrix.value.back() += row[k].second;
+      } else {
+        matrix.column.push_back(row[k].first);
+        matrix.value.push_back(row[k].second);
+      }
+    }
+    matrix.first.push_back(static_cast<std::int32_t>(matrix.column.size()));
+  }
+  return matrix;
+}
+
+void SystemMatrix::SetUp(BlockPattern pattern, const ScalarMatrix& constant, std::span<const std::uint8_t> pinned) {
+  assert(constant.rows() == pattern.rows());
+  pattern_ = std::move(pattern);
+  pinned_.assign(pinned.begin(), pinned.end());
+  const int n = rows();
+  const std::size_t blockCount = pattern_.column.size();
+  diagonal_.resize(n);
+  cleared_.clear();
+  constant_.assign(blockCount, 0);
+  blocks_.assign(9 * blockCount + 1, 0);
+  inverse_.assign(9 * static_cast<std::size_t>(n) + 1, 0);
+  for (int row = 0; row < n; ++row) {
+    diagonal_[row] = pattern_.Find(row, row);
+    for (std::int32_t k = pattern_.first[row]; k < pattern_.first[row + 1]; ++k) {
+      if (Pinned(row) || Pinned(pattern_.column[k])) cleared_.push_back(k);
+    }
+  }
+  restFirst_.assign(1, 0);
+  restColumn_.clear();
+  restValue_.clear();
+  for (int row = 0; row < n; ++row) {
+    for (std::int32_t k = constant.first[row]; k < constant.first[row + 1]; ++k) {
+      const std::int32_t column = constant.column[k];
+      if (Pinned(row) || Pinned(column)) continue;
+      if (const std::int32_t inside = pattern_.Find(row, column); inside >= 0) {
+        constant_[inside] = static_cast<Real>(constant.value[k]);
+      } else {
+        restColumn_.push_back(column);
+        restValue_.push_back(static_cast<Real>(constant.value[k]));
+      }
+    }
+    restFirst_.push_back(static_cast<std::int32_t>(restColumn_.size()));
+  }
+  extra_.begin.assign(n, 0);
+  extra_.end.assign(n, 0);
+  extra_.any = false;
+}
+
+ScalarMatrix SystemMatrix::Rest() const {
+  return {restFirst_, restColumn_, {restValue_.begin(), restValue_.end()}};
+}
+
+void SystemMatrix::Reset(const Executor& executor) {
+  executor.ForChunks(Chunks(rows()), [&](int chunk) {
+    const int begin = chunk * kRowsPerChunk, end = std::min(rows(), begin + kRowsPerChunk);
+    for (std::int32_t k = pattern_.first[begin]; k < pattern_.first[end]; ++k) {
+      Real* block = Block(k);
+      for (int c = 0; c < 9; ++c) block[c] = 0;
+      block[0] = block[4] = block[8] = constant_[k];
+    }
+  });
+}
+
+void SystemMatrix::SetExtra(std::span<const ExtraBlock> blocks, const Executor& executor) {
+  const int n = rows();
+  const auto counts = [&](const ExtraBlock& b) { return !Pinned(b.row) && !Pinned(b.column); };
+  std::fill(extra_.end.begin(), extra_.end.end(), 0);
+  std::int32_t total = 0;
+  for (const ExtraBlock& b : blocks) {
+    if (!counts(b)) continue;
+    ++extra_.end[b.row], ++total;
+    if (b.row != b.column) ++extra_.end[b.column], ++total;
+  }
+  extra_.any = total > 0;
+  if (!extra_.any) return;
+  std::int32_t next = 0;
+  for (int row = 0; row < n; ++row) {
+    extra_.begin[row] = next;
+    next += extra_.end[row];
+    extra_.end[row] = extra_.begin[row];
+  }
+  Grow(extraOrder_, total);
+  Grow(extra_.column, total);
+  Grow(extra_.block, 9 * static_cast<std::size_t>(total) + 1);
+  // What goes where: twice the index of a given block, and one more where its transpose is meant.
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    if (!counts(blocks[k])) continue;
+    extraOrder_[extra_.end[blocks[k].row]++] = static_cast<std::int32_t>(2 * k);
+    if (blocks[k].row != blocks[k].column)
+      extraOrder_[extra_.end[blocks[k].column]++] = static_cast<std::int32_t>(2 * k + 1);
+  }
+  executor.ForChunks(Chunks(n), [&](int chunk) {
+    for (int row = chunk * kRowsPerChunk; row < std::min(n, (chunk + 1) * kRowsPerChunk); ++row) {
+      const auto columnOf = [&](std::int32_t order) {
+        return order % 2 ? blocks[order / 2].row : blocks[order / 2].column;
+      };
+      std::sort(extraOrder_.begin() + extra_.begin[row], extraOrder_.begin() + extra_.end[row],
+                [&](std::int32_t a, std::int32_t b) {
+                  return columnOf(a) != columnOf(b) ? columnOf(a) < columnOf(b) : a < b;
+                });
+      std::int32_t last = extra_.begin[row] - 1;
+      for (std::int32_t k = extra_.begin[row]; k < extra_.end[row]; ++k) {
+        const std::int32_t order = extraOrder_[k];
+        if (last < extra_.begin[row] || extra_.column[last] != columnOf(order)) {
+          extra_.column[++last] = columnOf(order);
+          std::fill_n(&extra_.block[9 * static_cast<std::size_t>(last)], 9, Real{0});
+        }
+        Real* sum = &extra_.block[9 * static_cast<std::size_t>(last)];
+        const std::array<Real, 9>& from = blocks[order / 2].block;
+        for (int c = 0; c < 9; ++c) sum[c] += order % 2 ? from[c % 3 * 3 + c / 3] : from[c];
+      }
+      extra_.end[row] = last + 1;
+    }
+  });
+}
+
+void SystemMatrix::Finish(const Executor& executor) {
+  for (const std::int32_t k : cleared_) std::fill_n(Block(k), 9, Real{0});
+  for (int row = 0; row < static_cast<int>(pinned_.size()); ++row) {
+    if (!pinned_[row]) continue;
+    for (const int c : {0, 4, 8}) Block(diagonal_[row])[c] = 1;
+  }
+  executor.ForChunks(Chunks(rows()), [&](int chunk) {
+    for (int row = chunk * kRowsPerChunk; row < std::min(rows(), (chunk + 1) * kRowsPerChunk); ++row) {
+      Invert(Diagonal(row), &inverse_[9 * static_cast<std::size_t>(row)]);
+    }
+  });
+}
+
+std::array<Real, 9> SystemMatrix::Diagonal(int row) const {
+  std::array<Real, 9> sum;
+  std::copy_n(Block(diagonal_[row]), 9, sum.begin());
+  if (!extra_.any) return sum;
+  for (std::int32_t k = extra_.begin[row]; k < extra_.end[row]; ++k) {
+    if (extra_.column[k] != row) continue;
+    for (int c = 0; c < 9; ++c) sum[c] += extra_.block[9 * static_cast<std::size_t>(k) + c];
+  }
+  return sum;
+}
+
+void SystemMatrix::Multiply(const Real* x, Real* y, const Executor& executor) const {
+  executor.ForChunks(Chunks(rows()), [&](int chunk) {
+    Real* __restrict out = y;
+    ForRows(pattern_, blocks_.data(), restFirst_.data(), restColumn_.data(), restValue_.data(), extra_, x,
+            chunk * kRowsPerChunk, std::min(rows(), (chunk + 1) * kRowsPerChunk),
+            [&](int row, Real4 s) { Store3(s, out + 3 * static_cast<std::size_t>(row)); });
+  });
+}
+
+double SystemMatrix::MultiplyDot(const Real* x, Real* y, std::span<double> chunkSums, const Executor& executor) const {
+  executor.ForChunks(Chunks(rows()), [&](int chunk) {
+    Real* __restrict out = y;
+    double sum = 0;
+    ForRows(pattern_, blocks_.data(), restFirst_.data(), restColumn_.data(), restValue_.data(), extra_, x,
+            chunk * kRowsPerChunk, std::min(rows(), (chunk + 1) * kRowsPerChunk), [&](int row, Real4 s) {
+              const std::size_t at = 3 * static_cast<std::size_t>(row);
+              double product = 0;
+              for (int r = 0; r < 3; ++r) {
+                out[at + r] = s[r];
+                product += static_cast<double>(x[at + r]) * s[r];
+              }
+              sum += product;
+            });
+    chunkSums[chunk] = sum;
+  });
+  double sum = 0;
+  for (const double part : chunkSums) sum += part;
+  return sum;
+}
+
+void SystemMatrix::Residual(const Real* b, const Real* x, Real* y, const Executor& executor) const {
+  executor.ForChunks(Chunks(rows()), [&](int chunk) {
+    Real* __restrict out = y;
+    ForRows(pattern_, blocks_.data(), restFirst_.data(), restColumn_.data(), restValue_.data(), extra_, x,
+            chunk * kRowsPerChunk, std::min(rows(), (chunk + 1) * kRowsPerChunk), [&](int row, Real4 s) {
+              const std::size_t at = 3 * static_cast<std::size_t>(row);
+              for (int r = 0; r < 3; ++r) out[at + r] = b[at + r] - s[r];
+            });
+  });
+}
+
+void SystemMatrix::Smooth(Real omega, const Real* b, const Real* x, Real* y, const Executor& executor) const {
+  executor.ForChunks(Chunks(rows()), [&](int chunk) {
+    Real* __restrict out = y;
+    ForRows(pattern_, blocks_.data(), restFirst_.data(), restColumn_.data(), restValue_.data(), extra_, x,
+            chunk * kRowsPerChunk, std::min(rows(), (chunk + 1) * kRowsPerChunk), [&](int row, Real4 s) {
+              const std::size_t at = 3 * static_cast<std::size_t>(row);
+              const Real left[3] = {b[at] - s[0], b[at + 1] - s[1], b[at + 2] - s[2]};
+              const Real4 step = Product(InverseDiagonal(row), left);
+              for (int r = 0; r < 3; ++r) out[at + r] = x[at + r] + omega * step[r];
+            });
+  });
+}
+
+void SystemMatrix::SmoothFromZero(Real omega, const Real* b, Real* y, const Executor& executor) const {
+  executor.ForChunks(Chunks(rows()), [&](int chunk) {
+    Real* __restrict out = y;
+    for (int row = chunk * kRowsPerChunk; row < std::min(rows(), (chunk + 1) * kRowsPerChunk); ++row) {
+      const std::size_t at = 3 * static_cast<std::size_t>(row);
+      Store3(Product(InverseDiagonal(row), b + at) * omega, out + at);
+    }
+  });
+}
+
+void SystemMatrix::ToDense(double* dense) const {
+  const std::size_t n = 3 * static_cast<std::size_t>(rows());
+  std::fill_n(dense, n * n, 0.0);
+  const auto add = [&](int row, int column, const Real* block) {
+    for (int k = 0; k < 9; ++k) dense[(3 * row + k % 3) * n + 3 * column + k / 3] += static_cast<double>(block[k]);
+  };
+  for (int row = 0; row < rows(); ++row) {
+    for (std::int32_t k = pattern_.first[row]; k < pattern_.first[row + 1]; ++k) add(row, pattern_.column[k], Block(k));
+    for (std::int32_t k = restFirst_[row]; k < restFirst_[row + 1]; ++k) {
+      for (int r = 0; r < 3; ++r)
+        dense[(3 * row + r) * n + 3 * restColumn_[k] + r] += static_cast<double>(restValue_[k]);
+    }
+    for (std::int32_t k = extra_.any ? extra_.begin[row] : 0; extra_.any && k < extra_.end[row]; ++k) {
+      add(row, extra_.column[k], &extra_.block[9 * static_cast<std::size_t>(k)]);
+    }
+  }
+}
+
+std::size_t SystemMatrix::MemoryBytes() const {
+  return Bytes(pattern_.first) + Bytes(pattern_.column) + Bytes(restFirst_) + Bytes(restColumn_) + Bytes(restValue_) +
+         Bytes(pinned_) + Bytes(diagonal_) + Bytes(cleared_) + Bytes(constant_) + Bytes(blocks_) + Bytes(inverse_) +
+         Bytes(extra_.begin) + Bytes(extra_.end) + Bytes(extra_.column) + Bytes(extra_.block) + Bytes(extraOrder_);
+}
+
+}  // namespace percale::fabric

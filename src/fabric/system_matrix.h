@@ -1,0 +1,144 @@
+#pragma once
+/// \file
+/// The matrix of one Newton step, a symmetric sparse one over vertices:
+///
+///   H = B + S (x) I3 + E
+///
+/// B has blocks of 3 x 3 between neighbours in the mesh and is filled anew in every Newton step. S has scalars, which
+/// stay: bending that is quadratic in the positions (Bergou et al. 2006, "A quadratic bending model for inextensible
+/// surfaces") and masses over h^2. E has blocks between vertices wherever they are, in places that change: contacts.
+/// Rows and columns of pinned vertices are those of the identity.
+///
+/// A coarse level of multigrid is such a matrix too, over nodes instead of vertices.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/executor.h"
+#include "fabric/real.h"
+#include "percale/mesh.h"
+
+namespace percale::fabric {
+
+/// Which pairs of rows have a block: in compressed rows, the columns of each row ascending and with its own among them.
+/// Symmetric.
+struct BlockPattern {
+  std::vector<std::int32_t> first;   ///< Per row: index of its first block; one more number at the end.
+  std::vector<std::int32_t> column;  ///< Per block.
+
+  int rows() const { return static_cast<int>(first.size()) - 1; }
+  int blocks() const { return static_cast<int>(column.size()); }
+  /// The index of a block, -1 where there is none.
+  std::int32_t Find(std::int32_t row, std::int32_t columnSought) const;
+};
+
+/// Couples the corners of each triangle, and the ends of each of `morePairs`, over `vertices` of them.
+BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std::span<const Edge> morePairs = {});
+
+/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
+std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
+                                                        std::span<const Triangle> triangles);
+
+/// A sparse matrix of scalars in compressed rows, the columns of each row ascending.
+struct ScalarMatrix {
+  std::vector<std::int32_t> first, column;  ///< As in BlockPattern.
+  std::vector<double> value;
+
+  int rows() const { return static_cast<int>(first.size()) - 1; }
+};
+struct ScalarEntry {
+  std::int32_t row = 0, column = 0;
+  double value = 0;
+};
+/// Entries at the same place add up, in the order in which they are given.
+ScalarMatrix MakeScalarMatrix(int rows, std::span<const ScalarEntry> entries);
+
+/// A block of E. Between two vertices it stands for itself and for its transpose at (column, row). Of two vertices a
+/// block is given once, or in parts that add up.
+struct ExtraBlock {
+  std::int32_t row = 0, column = 0;
+  std::array<Real, 9> block{};  ///< Column by column.
+};
+
+/// E in compressed rows with gaps between them. Its arrays grow and never shrink.
+struct ExtraRows {
+  std::vector<std::int32_t> begin, end;  ///< Per row: its blocks are begin <= k < end.
+  std::vector<std::int32_t> column;      ///< Per block.
+  RealVector block;                      ///< Nine per block, column by column, and one more at the end.
+  bool any = false;                      ///< Whether there are blocks; if not, begin and end do not count.
+};
+
+class SystemMatrix {
+ public:
+  /// `constant`: S, as large as `pattern`. `pinned`: per row, 1 where a vertex does not move; or nothing.
+  /// Afterwards nothing allocates but SetExtra.
+  void SetUp(BlockPattern pattern, const ScalarMatrix& constant, std::span<const std::uint8_t> pinned = {});
+
+  int rows() const { return pattern_.rows(); }
+  const BlockPattern& pattern() const { return pattern_; }
+  /// S without rows and columns of pinned vertices and without what lies within the pattern, which Reset puts there.
+  ScalarMatrix Rest() const;
+  bool Pinned(int row) const { return !pinned_.empty() && pinned_[row]; }
+
+  // In this order for each Newton step:
+
+  /// Starts to fill the blocks: sets them to what S has within the pattern.
+  void Reset(const Executor& executor);
+  /// The nine Reals of the block with that index in the pattern, column by column: what links force component r of its
+  /// row with displacement component c of its column is at 3 c + r. To be added to.
+  Real* Block(std::int32_t index) { return &blocks_[9 * static_cast<std::size_t>(index)]; }
+  const Real* Block(std::int32_t index) const { return &blocks_[9 * static_cast<std::size_t>(index)]; }
+  /// Sets E. Allocates only when there is more of it than ever before. Leaving it out keeps E.
+  void SetExtra(std::span<const ExtraBlock> blocks, const Executor& executor);
+  /// Ends the filling: clears what belongs to pinned vertices and inverts the diagonal.
+  void Finish(const Executor& executor);
+
+  // All vectors are of VectorLength(rows()) Reals, and none may be another.
+
+  /// y = H x
+  void Multiply(const Real* x, Real* y, const Executor& executor) const;
+  /// y = H x; returns x'y. `chunkSums`: Chunks(rows()) numbers of scratch.
+  double MultiplyDot(const Real* x, Real* y, std::span<double> chunkSums, const Executor& executor) const;
+  /// y = b - H x
+  void Residual(const Real* b, const Real* x, Real* y, const Executor& executor) const;
+  /// y = x + omega D^-1 (b - H x), D being the diagonal blocks: a step of Jacobi's.
+  void Smooth(Real omega, const Real* b, const Real* x, Real* y, const Executor& executor) const;
+  /// y = omega D^-1 b, the same step from x = 0.
+  void SmoothFromZero(Real omega, const Real* b, Real* y, const Executor& executor) const;
+
+  /// The block of E and B and S on the diagonal, and its inverse, symmetric; both of nine Reals. Where the block is not
+  /// positive definite the inverse is of its trace instead.
+  std::array<Real, 9> Diagonal(int row) const;
+  const Real* InverseDiagonal(int row) const { return &inverse_[9 * static_cast<std::size_t>(row)]; }
+
+  const ExtraRows& extra() const { return extra_; }
+  ExtraRows& extra() { return extra_; }
+  /// Writes the matrix to `dense`, (3 rows)^2 numbers.
+  void ToDense(double* dense) const;
+  /// Of all arrays.
+  std::size_t MemoryBytes() const;
+
+ private:
+  BlockPattern pattern_;
+  std::vector<std::int32_t> restFirst_, restColumn_;
+  std::vector<Real> restValue_;
+  std::vector<std::uint8_t> pinned_;
+  std::vector<std::int32_t> diagonal_;  // per row: index of its block on the diagonal
+  std::vector<std::int32_t> cleared_;   // blocks in rows and columns of pinned vertices
+  std::vector<Real> constant_;          // per block: what S has there
+  RealVector blocks_, inverse_;         // nine per block or row, and one more at the end
+  ExtraRows extra_;
+  std::vector<std::int32_t> extraOrder_;
+};
+
+/// The rows that one chunk of a loop covers. Small enough that two threads share 2,000 vertices well, large enough that
+/// to hand out a chunk (about a microsecond) costs little. Sums depend on it, so it is the same everywhere.
+inline constexpr int kRowsPerChunk = 512;
+inline int Chunks(int rows, int perChunk = kRowsPerChunk) {
+  return (rows + perChunk - 1) / perChunk;
+}
+
+}  // namespace percale::fabric
