@@ -1,0 +1,411 @@
+#include "fabric/multigrid.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include "fabric/real4.h"
+
+namespace percale::fabric {
+namespace {
+
+constexpr Real kOmega = Real{.5};    // damping of Jacobi's steps
+constexpr int kProductChunk = 256;   // rows of H P that one chunk computes
+constexpr int kNodeChunk = 32;       // rows of P' (H P)
+constexpr int kRestrictChunk = 128;  // nodes that one chunk restricts to
+constexpr int kExtraParts = 16;      // each marks all nodes of a level, so there is a fixed number of them
+constexpr int kMostDirect = 200;     // nodes up to which the coarsest level is factored: 6 ms
+constexpr int kCoarsestSweeps = 4;   // of Jacobi where it is larger
+
+using Slot = std::uint16_t;
+
+template <class T, class Allocator>
+std::size_t Bytes(const std::vector<T, Allocator>& array) {
+  return array.capacity() * sizeof(T);
+}
+
+}  // namespace
+
+/// A coarse level and the way to it.
+struct Multigrid::Level {
+  Prolongation p;
+  std::vector<std::int32_t> rowFirst, row;  // P': per node its fine rows ...
+  std::vector<Real> rowWeight;              // ... and their weights
+
+  // The blocks of T = H P lie in compressed rows.
+  std::vector<std::int32_t> productFirst;
+  // In the order of the loops: for each block of H and each weight of its column where in its row of T it goes.
+  std::vector<Slot> productSlot;
+  std::vector<std::int32_t> productSlotFirst;  // per chunk of kProductChunk rows: its first slot
+  // For each weight of P' how many blocks at the start of that row of T are left of the diagonal of A, and then for
+  // each block that is not where in its row of A it goes; per node, where the latter start.
+  std::vector<Slot> skip, slot;
+  std::vector<std::int32_t> slotFirst;
+  std::vector<std::int32_t> mirror;  // per block of A: the one that it is the transpose of, -1 if none
+
+  SystemMatrix matrix;
+  RealVector right, solution, scratch;  // vectors over its nodes
+};
+
+/// Sums blocks into rows (Gustavson 1978, "Two fast algorithms for sparse matrices: multiplication and permuted
+/// transposition").
+struct Multigrid::ExtraPart {
+  std::vector<std::int32_t> place;  // per node: where in the row at hand its block is, -1 if there is none
+  std::vector<std::int32_t> column;
+  RealVector block;
+
+  void Add(std::int32_t node, Real weight, const Real* from) {
+    if (place[node] < 0) {
+      place[node] = static_cast<std::int32_t>(column.size());
+      column.push_back(node);
+      block.resize(block.size() + 9, 0);
+    }
+    AddScaled(&block[9 * static_cast<std::size_t>(place[node])], weight, from);
+  }
+};
+
+Multigrid::Multigrid() = default;
+Multigrid::~Multigrid() = default;
+
+const SystemMatrix& Multigrid::matrix(int level) const {
+  return levels_[level]->matrix;
+}
+
+const Prolongation& Multigrid::prolongation(int level) const {
+  return levels_[level]->p;
+}
+
+namespace {
+
+/// P' S P, node by node. `rowFirst`, `row`, `rowWeight`: P' in compressed rows.
+ScalarMatrix CoarseScalars(const ScalarMatrix& fine, const Prolongation& p, const std::vector<std::int32_t>& rowFirst,
+                           const std::vector<std::int32_t>& rowOf, const std::vector<Real>& rowWeight) {
+  ScalarMatrix coarse;
+  coarse.first.push_back(0);
+  std::vector<double> sum(p.nodes, 0);
+  std::vector<std::int32_t> seenBy(p.nodes, -1), columns;
+  for (int node = 0; node < p.nodes; ++node) {
+    columns.clear();
+    for (std::int32_t e = rowFirst[node]; e < rowFirst[node + 1]; ++e) {
+      for (std::int32_t k = fine.first[rowOf[e]]; k < fine.first[rowOf[e] + 1]; ++k) {
+        const double value = static_cast<double>(rowWeight[e]) * fine.value[k];
+        for (std::int32_t f = p.first[fine.column[k]]; f < p.first[fine.column[k] + 1]; ++f) {
+          const std::int32_t column = p.column[f];
+          if (std::exchange(seenBy[column], node) != node) columns.push_back(column), sum[column] = 0;
+          sum[column] += value * static_cast<double>(p.weight[f]);
+        }
+      }
+    }
+    std::sort(columns.begin(), columns.end());
+    for (const std::int32_t column : columns) {
+      coarse.column.push_back(column);
+      coarse.value.push_back(sum[column]);
+    }
+    coarse.first.push_back(static_cast<std::int32_t>(coarse.column.size()));
+  }
+  return coarse;
+}
+
+}  // namespace
+
+void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierarchy) {
+  levels_.clear();
+  parts_.clear();
+  parts_.resize(kExtraParts);
+  const SystemMatrix* above = &fine;
+  std::size_t greatestProduct = 0;
+  for (Prolongation& p : hierarchy) {
+    levels_.push_back(std::make_unique<Level>());
+    Level& level = *levels_.back();
+    level.p = std::move(p);
+    const Prolongation& P = level.p;
+    const BlockPattern& pattern = above->pattern();
+    assert(P.rows() == pattern.rows());
+    level.rowFirst.assign(P.nodes + 1, 0);
+    for (const std::int32_t node : P.column) ++level.rowFirst[node + 1];
+    for (int node = 0; node < P.nodes; ++node) level.rowFirst[node + 1] += level.rowFirst[node];
+    level.row.resize(P.column.size());
+    level.rowWeight.resize(P.column.size());
+    std::vector<std::int32_t> next(level.rowFirst.begin(), level.rowFirst.end() - 1);
+    for (int row = 0; row < P.rows(); ++row) {
+      for (std::int32_t e = P.first[row]; e < P.first[row + 1]; ++e) {
+        const std::int32_t at = next[P.column[e]]++;
+        level.row[at] = row;
+        level.rowWeight[at] = P.weight[e];
+      }
+    }
+
+    level.matrix.SetUp(CoarsePattern(pattern, P),
+                       CoarseScalars(above->Rest(), P, level.rowFirst, level.row, level.rowWeight));
+    const BlockPattern& coarse = level.matrix.pattern();
+
+    // Rows of T: the nodes of all columns, ascending. Only those of rows that P' reads.
+    std::vector<std::int32_t> nodes, productColumn;
+    level.productFirst.assign(1, 0);
+    for (int row = 0; row < P.rows(); ++row) {
+      if (row % kProductChunk == 0)
+        level.productSlotFirst.push_back(static_cast<std::int32_t>(level.productSlot.size()));
+      nodes.clear();
+      const bool read = P.first[row] < P.first[row + 1];
+      for (std::int32_t k = pattern.first[row]; read && k < pattern.first[row + 1]; ++k) {
+        const std::int32_t other = pattern.column[k];
+        nodes.insert(nodes.end(), P.column.begin() + P.first[other], P.column.begin() + P.first[other + 1]);
+      }
+      std::sort(nodes.begin(), nodes.end());
+      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+      assert(nodes.size() <= 0xffff);
+      for (std::int32_t k = pattern.first[row]; read && k < pattern.first[row + 1]; ++k) {
+        const std::int32_t other = pattern.column[k];
+        for (std::int32_t e = P.first[other]; e < P.first[other + 1]; ++e) {
+          const auto found = std::lower_bound(nodes.begin(), nodes.end(), P.column[e]);
+          level.productSlot.push_back(static_cast<Slot>(found - nodes.begin()));
+        }
+      }
+      productColumn.insert(productColumn.end(), nodes.begin(), nodes.end());
+      level.productFirst.push_back(static_cast<std::int32_t>(productColumn.size()));
+    }
+    greatestProduct = std::max(greatestProduct, productColumn.size());
+
+    for (int node = 0; node < P.nodes; ++node) {
+      level.slotFirst.push_back(static_cast<std::int32_t>(level.slot.size()));
+      for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
+        const auto begin = productColumn.begin() + level.productFirst[level.row[e]];
+        const auto end = productColumn.begin() + level.productFirst[level.row[e] + 1];
+        const auto diagonal = std::lower_bound(begin, end, node);
+        level.skip.push_back(static_cast<Slot>(diagonal - begin));
+        for (auto at = diagonal; at != end; ++at) {
+          const std::int32_t place = coarse.Find(node, *at) - coarse.first[node];
+          assert(place >= 0 && place <= 0xffff);
+          level.slot.push_back(static_cast<Slot>(place));
+        }
+      }
+      for (std::int32_t k = coarse.first[node]; k < coarse.first[node + 1]; ++k) {
+        const std::int32_t other = coarse.column[k];
+        level.mirror.push_back(other < node ? coarse.Find(other, node) : -1);
+      }
+    }
+
+    level.right.assign(VectorLength(P.nodes), 0);
+    level.solution.assign(VectorLength(P.nodes), 0);
+    level.scratch.assign(VectorLength(P.nodes), 0);
+    above = &level.matrix;
+  }
+  product_.assign(9 * greatestProduct + 1, 0);
+  fineScratch_.assign(VectorLength(fine.rows()), 0);
+  extraProduct_.begin.assign(fine.rows(), 0);
+  extraProduct_.end.assign(fine.rows(), 0);
+  if (!levels_.empty()) {
+    for (ExtraPart& part : parts_) part.place.assign(levels_.front()->p.nodes, -1);
+  }
+  direct_ = above->rows() <= kMostDirect;
+  dense_.SetUp(direct_ ? 3 * above->rows() : 0);
+  denseVector_.assign(dense_.size(), 0);
+}
+
+void Multigrid::Refill(const SystemMatrix& fine, const Executor& executor) {
+  const SystemMatrix* above = &fine;
+  for (const auto& level : levels_) {
+    RefillBlocks(*above, *level, executor);
+    above = &level->matrix;
+  }
+  RefillExtra(fine, executor);
+}
+
+void Multigrid::RefillExtra(const SystemMatrix& fine, const Executor& executor) {
+  const SystemMatrix* above = &fine;
+  for (const auto& level : levels_) {
+    RefillExtra(*above, *level, executor);
+    level->matrix.Finish(executor);
+    above = &level->matrix;
+  }
+  if (!direct_) return;
+  above->ToDense(dense_.matrix());
+  shift_ = dense_.Factor();
+}
+
+void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Executor& executor) {
+  const Prolongation& p = level.p;
+  const BlockPattern& pattern = fine.pattern();
+  // T = H P, by rows.
+  executor.ForChunks(Chunks(p.rows(), kProductChunk), [&](int chunk) {
+    const int begin = chunk * kProductChunk, end = std::min(p.rows(), begin + kProductChunk);
+    const Slot* __restrict slot = level.productSlot.data() + level.productSlotFirst[chunk];
+    for (int row = begin; row < end; ++row) {
+      const std::int32_t productBegin = level.productFirst[row], productEnd = level.productFirst[row + 1];
+      if (productBegin == productEnd) continue;
+      Real* __restrict to = &product_[9 * static_cast<std::size_t>(productBegin)];
+      std::fill_n(to, 9 * static_cast<std::size_t>(productEnd - productBegin), Real{0});
+      for (std::int32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
+        const Real* __restrict block = fine.Block(k);
+        const std::int32_t other = pattern.column[k];
+        for (std::int32_t e = p.first[other]; e < p.first[other + 1]; ++e) {
+          AddScaled(to + 9 * static_cast<std::size_t>(*slot++), p.weight[e], block);
+        }
+      }
+    }
+  });
+  // A = P' T on and right of the diagonal, on top of the constant part.
+  level.matrix.Reset(executor);
+  const BlockPattern& coarse = level.matrix.pattern();
+  executor.ForChunks(Chunks(p.nodes, kNodeChunk), [&](int chunk) {
+    const int begin = chunk * kNodeChunk, end = std::min(p.nodes, begin + kNodeChunk);
+    const Slot* __restrict slot = level.slot.data() + level.slotFirst[begin];
+    for (int node = begin; node < end; ++node) {
+      Real* __restrict to = level.matrix.Block(coarse.first[node]);
+      for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
+        const Real weight = level.rowWeight[e];
+        const std::int32_t last = level.productFirst[level.row[e] + 1];
+        for (std::int32_t k = level.productFirst[level.row[e]] + level.skip[e]; k < last; ++k) {
+          AddScaled(to + 9 * static_cast<std::size_t>(*slot++), weight, &product_[9 * static_cast<std::size_t>(k)]);
+        }
+      }
+    }
+  });
+  executor.ForChunks(Chunks(p.nodes), [&](int chunk) {
+    const int begin = chunk * kRowsPerChunk, end = std::min(p.nodes, begin + kRowsPerChunk);
+    for (std::int32_t k = coarse.first[begin]; k < coarse.first[end]; ++k) {
+      if (level.mirror[k] < 0) continue;
+      const Real* __restrict from = level.matrix.Block(level.mirror[k]);
+      Real* __restrict to = level.matrix.Block(k);
+      for (int c = 0; c < 9; ++c) to[c] = from[c % 3 * 3 + c / 3];
+    }
+  });
+}
+
+/// Fills `to` with `rows` rows: visit(row, part) adds the blocks of one to `part`. Each part sums its share of the rows
+/// in memory of its own; then all are laid end to end.
+template <class Visit>
+void Multigrid::SumRows(int rows, ExtraRows& to, const Executor& executor, Visit&& visit) {
+  const auto firstRow = [&](int part) {
+    return static_cast<int>(static_cast<std::int64_t>(rows) * part / kExtraParts);
+  };
+  executor.ForChunks(kExtraParts, [&](int index) {
+    ExtraPart& part = parts_[index];
+    part.column.clear();
+    part.block.clear();
+    for (int row = firstRow(index); row < firstRow(index + 1); ++row) {
+      const std::size_t begin = part.column.size();
+      visit(row, part);
+      for (std::size_t k = begin; k < part.column.size(); ++k) part.place[part.column[k]] = -1;
+      to.begin[row] = static_cast<std::int32_t>(begin);
+      to.end[row] = static_cast<std::int32_t>(part.column.size());
+    }
+  });
+  std::size_t total = 0;
+  for (const ExtraPart& part : parts_) total += part.column.size();
+  if (to.column.size() < total) {
+    to.column.resize(total + total / 2);
+    to.block.resize(9 * to.column.size() + 1);
+  }
+  std::int32_t offset = 0;
+  for (int index = 0; index < kExtraParts; ++index) {
+    const ExtraPart& part = parts_[index];
+    std::copy(part.column.begin(), part.column.end(), to.column.begin() + offset);
+    std::copy(part.block.begin(), part.block.end(), to.block.begin() + 9 * static_cast<std::ptrdiff_t>(offset));
+    for (int row = firstRow(index); row < firstRow(index + 1); ++row) {
+      to.begin[row] += offset;
+      to.end[row] += offset;
+    }
+    offset += static_cast<std::int32_t>(part.column.size());
+  }
+  to.any = true;
+}
+
+void Multigrid::RefillExtra(const SystemMatrix& fine, Level& level, const Executor& executor) {
+  const Prolongation& p = level.p;
+  const ExtraRows& from = fine.extra();
+  level.matrix.extra().any = false;
+  if (!from.any) return;
+  SumRows(p.rows(), extraProduct_, executor, [&](int row, ExtraPart& part) {  // E P
+    if (p.first[row] == p.first[row + 1]) return;
+    for (std::int32_t k = from.begin[row]; k < from.end[row]; ++k) {
+      for (std::int32_t e = p.first[from.column[k]]; e < p.first[from.column[k] + 1]; ++e) {
+        part.Add(p.column[e], p.weight[e], &from.block[9 * static_cast<std::size_t>(k)]);
+      }
+    }
+  });
+  SumRows(p.nodes, level.matrix.extra(), executor, [&](int node, ExtraPart& part) {  // P' (E P)
+    for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
+      const std::int32_t row = level.row[e];
+      for (std::int32_t k = extraProduct_.begin[row]; k < extraProduct_.end[row]; ++k) {
+        part.Add(extraProduct_.column[k], level.rowWeight[e], &extraProduct_.block[9 * static_cast<std::size_t>(k)]);
+      }
+    }
+  });
+}
+
+void Multigrid::SolveCoarsest(const SystemMatrix& matrix, const Real* r, Real* z, Real* scratch,
+                              const Executor& executor) {
+  if (direct_) {
+    for (int k = 0; k < dense_.size(); ++k) denseVector_[k] = r[k];
+    dense_.Solve(denseVector_.data());
+    for (int k = 0; k < dense_.size(); ++k) z[k] = static_cast<Real>(denseVector_[k]);
+    return;
+  }
+  static_assert(kCoarsestSweeps % 2 == 0, "so that the last sweep writes to z");
+  matrix.SmoothFromZero(kOmega, r, z, executor);
+  for (int sweep = 0; sweep < kCoarsestSweeps; sweep += 2) {
+    matrix.Smooth(kOmega, r, z, scratch, executor);
+    matrix.Smooth(kOmega, r, scratch, z, executor);
+  }
+}
+
+void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, const Executor& executor) {
+  const auto matrixOf = [&](int k) -> const SystemMatrix& { return k == 0 ? fine : levels_[k - 1]->matrix; };
+  const auto rightOf = [&](int k) { return k == 0 ? r : levels_[k - 1]->right.data(); };
+  const auto solutionOf = [&](int k) { return k == 0 ? z : levels_[k - 1]->solution.data(); };
+  const auto scratchOf = [&](int k) { return k == 0 ? fineScratch_.data() : levels_[k - 1]->scratch.data(); };
+  for (int k = 0; k < levels(); ++k) {
+    matrixOf(k).SmoothFromZero(kOmega, rightOf(k), solutionOf(k), executor);
+    matrixOf(k).Residual(rightOf(k), solutionOf(k), scratchOf(k), executor);
+    const Level& level = *levels_[k];
+    const Real* __restrict from = scratchOf(k);
+    Real* __restrict to = levels_[k]->right.data();
+    executor.ForChunks(Chunks(level.p.nodes, kRestrictChunk), [&](int chunk) {
+      for (int node = chunk * kRestrictChunk; node < std::min(level.p.nodes, (chunk + 1) * kRestrictChunk); ++node) {
+        Real4 sum = Real4::Zero();
+        for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
+          sum += Real4::Load(from + 3 * static_cast<std::size_t>(level.row[e])) * level.rowWeight[e];
+        }
+        Store3(sum, to + 3 * static_cast<std::size_t>(node));
+      }
+    });
+  }
+  SolveCoarsest(matrixOf(levels()), rightOf(levels()), solutionOf(levels()), scratchOf(levels()), executor);
+  for (int k = levels() - 1; k >= 0; --k) {
+    const Prolongation& p = levels_[k]->p;
+    const Real* __restrict from = levels_[k]->solution.data();
+    const Real* __restrict before = solutionOf(k);
+    Real* __restrict to = scratchOf(k);
+    executor.ForChunks(Chunks(p.rows()), [&](int chunk) {
+      for (int row = chunk * kRowsPerChunk; row < std::min(p.rows(), (chunk + 1) * kRowsPerChunk); ++row) {
+        Real4 sum = Real4::Zero();
+        for (std::int32_t e = p.first[row]; e < p.first[row + 1]; ++e) {
+          sum += Real4::Load(from + 3 * static_cast<std::size_t>(p.column[e])) * p.weight[e];
+        }
+        const std::size_t at = 3 * static_cast<std::size_t>(row);
+        for (int c = 0; c < 3; ++c) to[at + c] = before[at + c] + sum[c];
+      }
+    });
+    matrixOf(k).Smooth(kOmega, rightOf(k), to, solutionOf(k), executor);
+  }
+}
+
+std::size_t Multigrid::MemoryBytes() const {
+  std::size_t bytes = Bytes(product_) + Bytes(fineScratch_) + Bytes(denseVector_);
+  bytes += 2 * sizeof(double) * static_cast<std::size_t>(dense_.size()) * dense_.size();
+  bytes +=
+      Bytes(extraProduct_.begin) + Bytes(extraProduct_.end) + Bytes(extraProduct_.column) + Bytes(extraProduct_.block);
+  for (const ExtraPart& part : parts_) bytes += Bytes(part.place) + Bytes(part.column) + Bytes(part.block);
+  for (const auto& owned : levels_) {
+    const Level& level = *owned;
+    bytes += Bytes(level.p.first) + Bytes(level.p.column) + Bytes(level.p.weight) + Bytes(level.rowFirst) +
+             Bytes(level.row) + Bytes(level.rowWeight) + Bytes(level.productFirst) + Bytes(level.productSlotFirst) +
+             Bytes(level.productSlot) + Bytes(level.skip) + Bytes(level.slot) + Bytes(level.slotFirst) +
+             Bytes(level.mirror) + Bytes(level.right) + Bytes(level.solution) + Bytes(level.scratch) +
+             level.matrix.MemoryBytes();
+  }
+  return bytes;
+}
+
+}  // namespace percale::fabric
