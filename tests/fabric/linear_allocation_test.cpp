@@ -1,0 +1,42 @@
+// A warmed-up solve does not allocate, refilling included.
+
+#include <doctest/doctest.h>
+
+#include "core/executor.h"
+#include "fabric/conjugate_gradient.h"
+#include "fabric/multigrid.h"
+#include "fabric/prolongation.h"
+#include "tests/count_allocations.h"
+#include "tests/fabric/sheet.h"
+
+using namespace percale;
+using namespace percale::fabric;
+using namespace percale::test;
+
+TEST_CASE("a solve does not allocate, not even the first; contacts do when there are more than ever before") {
+  const Executor executor(1);
+  const Sheet sheet = Square(50);
+  const std::vector<ExtraBlock> many = RemotePairs(sheet, 400, 1000), few = RemotePairs(sheet, 300, 500);
+  SystemMatrix matrix;
+  Multigrid multigrid;
+  ConjugateGradient gradient;
+  matrix.SetUp(MakePattern(sheet.vertices(), sheet.triangles), ConstantPart(sheet, {}), sheet.pinned);
+  multigrid.SetUp(matrix, MakeHierarchy(matrix.pattern(), sheet.Mesh(), sheet.pinned));
+  gradient.SetUp(matrix.rows());
+  const RealVector b = Weight(sheet);
+  RealVector x(VectorLength(matrix.rows()), 0);
+  const auto solve = [&](std::span<const ExtraBlock> contacts) {
+    matrix.Reset(executor);
+    matrix.SetExtra(contacts, executor);
+    matrix.Finish(executor);
+    multigrid.Refill(matrix, executor);
+    gradient.Solve(matrix, multigrid, b.data(), x.data(), {}, executor);
+  };
+  CHECK(CountAllocations([&] { solve({}); }) == 0);
+  CHECK(CountAllocations([&] { solve(many); }) > 0);
+  CHECK(CountAllocations([&] {
+          solve(few);
+          solve({});
+          solve(many);
+        }) == 0);
+}
