@@ -35,6 +35,7 @@ PUBLIC = {
     "vec3.h": "math",
     "mesh.h": "mesh",
     "scene.h": "mesh",
+    "rest_mesh.h": "mesh",
     "interaction.h": "mesh",
     "parameters.h": "world",
     "world.h": "world",

@@ -1,0 +1,258 @@
+#include "mesh/mesh_problems.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "mesh/rest_mesh.h"
+#include "mesh/topology.h"
+
+namespace percale {
+namespace {
+
+/// So many are named in a message.
+constexpr std::size_t kNamed = 5;
+
+std::size_t Z(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+bool Within(double x) {
+  return std::abs(x) <= kFarthestVertex;  // false for NaN
+}
+
+/// Triangles with the same three vertices as one before, whatever their order; ascending.
+std::vector<std::int32_t> FindDuplicates(std::size_t vertexCount, std::span<const Triangle> triangles) {
+  struct Rest {
+    std::int32_t middle, high, triangle;
+  };
+  // By the lowest vertex first, which takes one pass; then the few that share it by the others.
+  std::vector<std::int32_t> begin(vertexCount + 1, 0);
+  for (const Triangle& t : triangles) ++begin[Z(std::min({t.a, t.b, t.c})) + 1];
+  for (std::size_t v = 0; v < vertexCount; ++v) begin[v + 1] += begin[v];
+  std::vector<Rest> sorted(triangles.size());
+  std::vector<std::int32_t> end(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
+    const std::int32_t low = std::min({t.a, t.b, t.c}), high = std::max({t.a, t.b, t.c});
+    const std::int32_t middle = std::max(std::min(t.a, t.b), std::min(std::max(t.a, t.b), t.c));
+    sorted[Z(end[Z(low)]++)] = {middle, high, static_cast<std::int32_t>(i)};
+  }
+  std::vector<std::int32_t> duplicates;
+  for (std::size_t v = 0; v < vertexCount; ++v) {
+    const auto first = sorted.begin() + begin[v], last = sorted.begin() + begin[v + 1];
+    std::sort(first, last, [](const Rest& a, const Rest& b) {
+      if (a.middle != b.middle) return a.middle < b.middle;
+      return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
+    });
+    for (auto r = first; r != last; ++r) {
+      if (r != first && r->middle == (r - 1)->middle && r->high == (r - 1)->high) duplicates.push_back(r->triangle);
+    }
+  }
+  std::sort(duplicates.begin(), duplicates.end());
+  return duplicates;
+}
+
+bool HasArea(std::span<const Vec2> material, std::size_t t) {
+  double longest = 0;  // squared
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2 &a = material[3 * t + k], &b = material[3 * t + (k + 1) % 3];
+    longest = std::max(longest, (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
+  }
+  return 2 * std::abs(MaterialArea(material, t)) > kThinnestTriangle * longest;
+}
+
+void FindErrors(const RestMesh& mesh, MeshProblems& problems) {
+  const std::size_t vertexCount = mesh.positions.size();
+  for (std::size_t v = 0; v < vertexCount; ++v) {
+    const Vec3& p = mesh.positions[v];
+    if (!Within(p.x) || !Within(p.y) || !Within(p.z)) problems.badPosition.push_back(static_cast<std::int32_t>(v));
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    const auto number = static_cast<std::int32_t>(i);
+    if (std::min({t.a, t.b, t.c}) < 0 || Z(std::max({t.a, t.b, t.c})) >= vertexCount) {
+      problems.badIndex.push_back(number);
+    } else if (t.a == t.b || t.b == t.c || t.c == t.a) {
+      problems.repeatedVertex.push_back(number);
+    } else {
+      const std::span<const Vec2> corners(&mesh.material[3 * i], 3);
+      const bool good =
+          std::all_of(corners.begin(), corners.end(), [](const Vec2& p) { return Within(p.x) && Within(p.y); });
+      if (!good)
+        problems.badMaterial.push_back(number);
+      else if (!HasArea(mesh.material, i))
+        problems.noArea.push_back(number);
+    }
+  }
+}
+
+std::string Few(std::size_t count, const auto& name) {
+  std::string out = "(";
+  const std::size_t named = std::min(count, kNamed), more = count - named;
+  for (std::size_t i = 0; i < named; ++i) {
+    if (i > 0) out += i + 1 == named && more == 0 ? " and " : ", ";
+    out += name(i);
+  }
+  if (more > 0) out += " and " + std::to_string(more) + " more";
+  return out + ", counted from 0)";
+}
+std::string Few(const std::vector<std::int32_t>& ids) {
+  return Few(ids.size(), [&](std::size_t i) { return std::to_string(ids[i]); });
+}
+
+/// "1 triangle has" or "3 triangles have".
+std::string Count(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+void DropEntries(auto& values, const std::vector<std::int32_t>& map) {
+  if (values.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (map[i] >= 0) values[kept++] = values[i];
+  }
+  values.resize(kept);
+}
+
+/// The new numbers of `count` things of which those of `dropped`, ascending, go.
+std::vector<std::int32_t> Renumbered(std::size_t count, const std::vector<std::int32_t>& dropped) {
+  std::vector<std::int32_t> map(count);
+  std::int32_t next = 0;
+  auto drop = dropped.begin();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool goes = drop != dropped.end() && Z(*drop) == i;
+    if (goes) ++drop;
+    map[i] = goes ? -1 : next++;
+  }
+  return map;
+}
+
+/// Mirrors a triangle in the fabric.
+void Mirror(RestMesh& mesh, std::int32_t t) {
+  for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Z(t) + k].y = -mesh.material[3 * Z(t) + k].y;
+}
+
+}  // namespace
+
+MeshProblems FindMeshProblems(const RestMesh& mesh) {
+  assert(mesh.material.size() == 3 * mesh.triangles.size());
+  MeshProblems problems;
+  FindErrors(mesh, problems);
+  if (problems.HasErrors()) return problems;
+
+  // Duplicates would make their edges look non-manifold, so the rest is about the mesh without them.
+  problems.duplicates = FindDuplicates(mesh.positions.size(), mesh.triangles);
+  const std::vector<std::int32_t> map = Renumbered(mesh.triangles.size(), problems.duplicates);
+  std::vector<Triangle> triangles = mesh.triangles;
+  DropEntries(triangles, map);
+  std::vector<std::int32_t> old;
+  old.reserve(triangles.size());
+  for (std::size_t t = 0; t < map.size(); ++t) {
+    if (map[t] >= 0) old.push_back(static_cast<std::int32_t>(t));
+  }
+
+  const Topology topology = BuildTopology(mesh.positions.size(), triangles);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (topology.component[v] < 0) problems.unreferenced.push_back(static_cast<std::int32_t>(v));
+  }
+  for (const std::int32_t edge : topology.nonManifoldEdges) problems.nonManifold.push_back(topology.edges[Z(edge)]);
+  const TurnedTriangles orientation = FindOrientation(topology);
+  for (const std::int32_t t : orientation.turn) problems.turned.push_back(old[Z(t)]);
+  for (const std::int32_t t : orientation.oneSided) problems.oneSided.push_back(old[Z(t)]);
+  for (const std::int32_t t : old) {
+    if (MaterialArea(mesh.material, Z(t)) < 0) problems.mirrored.push_back(t);
+  }
+  return problems;
+}
+
+std::vector<MeshProblem> DescribeMeshProblems(const MeshProblems& problems) {
+  std::vector<MeshProblem> found;
+  const auto about = [&](Severity severity, const std::vector<std::int32_t>& triangles, const char* one,
+                         const char* many, const std::string& remedy) {
+    if (triangles.empty()) return;
+    found.push_back(
+        {severity, Count(triangles.size(), one, many) + " " + Few(triangles) + "; " + remedy, triangles.front()});
+  };
+  about(Severity::Error, problems.badIndex, "triangle names a vertex that does not exist",
+        "triangles name vertices that do not exist", "expected the numbers of vertices of the mesh");
+  about(Severity::Error, problems.repeatedVertex, "triangle has the same vertex twice",
+        "triangles have the same vertex twice", "expected three different ones; remove such triangles");
+  if (!problems.badPosition.empty()) {
+    found.push_back({Severity::Error,
+                     Count(problems.badPosition.size(), "vertex is", "vertices are") +
+                         " not a place within 1000 km of the origin " + Few(problems.badPosition) +
+                         "; expected finite coordinates in metres",
+                     -1});
+  }
+  about(Severity::Error, problems.badMaterial, "triangle has no finite place within 1000 km in the fabric",
+        "triangles have no finite place within 1000 km in the fabric",
+        "give each corner texture coordinates, or take the rest shape from the positions");
+  about(Severity::Error, problems.noArea, "triangle has no area at rest", "triangles have no area at rest",
+        "expected a height above a millionth of the longest side; merge vertices that coincide, or remove such "
+        "triangles");
+  about(Severity::Warning, problems.duplicates, "triangle has the vertices of another",
+        "triangles have the vertices of others", "the later ones are dropped");
+  if (!problems.unreferenced.empty()) {
+    found.push_back({Severity::Warning,
+                     Count(problems.unreferenced.size(), "vertex belongs", "vertices belong") + " to no triangle " +
+                         Few(problems.unreferenced) + "; dropped",
+                     -1});
+  }
+  about(Severity::Warning, problems.turned, "triangle faces the other way than its neighbours",
+        "triangles face the other way than their neighbours", "turned over");
+  about(Severity::Warning, problems.mirrored, "triangle is clockwise in the fabric",
+        "triangles are clockwise in the fabric", "mirrored there");
+  if (!problems.nonManifold.empty()) {
+    const auto name = [&](std::size_t i) {
+      return std::to_string(problems.nonManifold[i].a) + "-" + std::to_string(problems.nonManifold[i].b);
+    };
+    found.push_back({Severity::Warning,
+                     Count(problems.nonManifold.size(), "edge has", "edges have") + " more than two triangles " +
+                         Few(problems.nonManifold.size(), name) + "; the cloth does not resist folding there",
+                     -1});
+  }
+  about(Severity::Warning, problems.oneSided, "piece has one side only, as a Moebius strip has",
+        "pieces have one side only, as a Moebius strip has", "front and back change over along a seam of it");
+  return found;
+}
+
+MeshMap RepairMesh(RestMesh& mesh, const MeshProblems& problems) {
+  assert(!problems.HasErrors());
+  for (const std::int32_t t : problems.turned) {
+    std::swap(mesh.triangles[Z(t)].b, mesh.triangles[Z(t)].c);
+    std::swap(mesh.material[3 * Z(t) + 1], mesh.material[3 * Z(t) + 2]);
+    Mirror(mesh, t);  // or turning would have made it clockwise
+  }
+  for (const std::int32_t t : problems.mirrored) Mirror(mesh, t);
+
+  MeshMap map{Renumbered(mesh.positions.size(), problems.unreferenced),
+              Renumbered(mesh.triangles.size(), problems.duplicates)};
+  if (!problems.duplicates.empty()) {
+    for (std::size_t t = 0; t < map.triangles.size(); ++t) {
+      if (map.triangles[t] < 0) continue;
+      for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Z(map.triangles[t]) + k] = mesh.material[3 * t + k];
+    }
+    DropEntries(mesh.triangles, map.triangles);
+    mesh.material.resize(3 * mesh.triangles.size());
+  }
+  if (!problems.unreferenced.empty()) {
+    DropEntries(mesh.positions, map.vertices);
+    DropEntries(mesh.uv, map.vertices);
+    DropEntries(mesh.source, map.vertices);
+    for (Triangle& t : mesh.triangles) t = {map.vertices[Z(t.a)], map.vertices[Z(t.b)], map.vertices[Z(t.c)]};
+    for (VertexGroup& group : mesh.groups) {
+      std::vector<std::int32_t> kept;
+      for (const std::int32_t v : group.vertices) {
+        if (map.vertices[Z(v)] >= 0) kept.push_back(map.vertices[Z(v)]);
+      }
+      group.vertices = std::move(kept);
+    }
+  }
+  return map;
+}
+
+}  // namespace percale
