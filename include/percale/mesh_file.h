@@ -1,17 +1,45 @@
 #pragma once
 /// \file
-/// Writers for meshes and for caches of many frames. Every file appears whole or not at all: it is
-/// written beside its place and renamed when finished.
+/// Meshes from files, and writers for meshes and for caches of many frames. Every file that is written appears whole or
+/// not at all: it is written beside its place and renamed when finished.
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "percale/diagnostic.h"
+#include "percale/rest_mesh.h"
 #include "percale/world.h"
 
 namespace percale {
+
+/// What a mesh is like when nothing pulls at it.
+enum class RestShape {
+  Space,    ///< As its vertices lie: the file shows the cloth at rest.
+  Texture,  ///< As its texture coordinates lie: the file shows worn cloth, and its texture the flat panels.
+};
+
+/// How the file of a mesh is to be understood.
+struct MeshOptions {
+  double scale = 1;                         ///< Metres per unit of the file, > 0.
+  RestShape rest = RestShape::Space;        ///< Where the rest shape comes from.
+  double metresPerUv = 1;                   ///< Size of the texture, when it is the rest shape [m], > 0.
+  std::optional<Vec3> warp = std::nullopt;  ///< Direction of the warp in space, of any length but 0, for triangles
+                                            ///< without texture coordinates; without it, that of their first edge.
+  bool weld = false;        ///< Vertices that lie together become one, which closes seams.
+  double weldDistance = 0;  ///< Farthest that they lie apart [m]: 0, for the same place, or >= 1e-9.
+};
+
+/// Reads a mesh by the extension of `file`:
+///   .obj  Wavefront: v, vt, f; g and o become groups of vertices
+///   .ply  Stanford, as text or binary: x y z, and s t, u v or texture_u texture_v; texcoord of faces
+/// Polygons become triangles. Vertices keep their order; those of no triangle are left out, as are duplicates of
+/// triangles, and triangles are turned to face like their neighbours; warnings tell of it. Errors name the line and
+/// column, or the byte of a binary file. Texture coordinates that differ between the corners at a vertex all count for
+/// the rest shape, and for drawing the first.
+Result<RestMesh> LoadMesh(const std::filesystem::path& file, const MeshOptions& options = {});
 
 /// Takes the frames of one run and writes them by the extension of `file`:
 ///   .csv  one table: frame,cloth,vertex,x,y,z with 17 significant digits
