@@ -55,12 +55,12 @@ double LeastOfFan(std::span<const Vec3> x, std::size_t start, const Vec3& normal
   return least;
 }
 
-/// The corner whose fan of triangles covers the polygon: the first where that does, which convex polygons always let
-/// it. Nothing where none does; a long polygon is not searched.
+/// The first corner whose fan of triangles covers the polygon; where some would have no area, the best of those tried.
+/// Nothing where every fan folds back. Of a long polygon not all corners are tried.
 std::optional<std::size_t> FanStart(std::span<const Vec3> x) {
   constexpr std::size_t kMostSearched = 64;
   constexpr double kNone = 1e-9;
-  if (x.size() == 3) return 0;
+  if (x.size() <= 3) return 0;
   const Vec3 normal = PolygonNormal(x);
   const double enough = kNone * Dot(normal, normal);
   std::size_t best = 0;
@@ -84,16 +84,28 @@ Triangles CutPolygons(const PolygonSoup& soup, const MeshSource& source, MeshMes
   if (hasUv) out.cornerUv.reserve(3 * count);
   constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   std::size_t folded = 0, firstFolded = 0;
+  std::vector<std::size_t> ring;
   std::vector<Vec3> x;
   for (std::size_t p = 0; p < soup.polygonEnds.size(); ++p) {
-    const std::size_t begin = soup.PolygonBegin(p), n = soup.polygonEnds[p] - begin;
+    const std::size_t begin = soup.PolygonBegin(p);
+    ring.resize(soup.polygonEnds[p] - begin);
+    std::iota(ring.begin(), ring.end(), begin);
+    // A corner twice in a row: some programs write triangles as quads. With less than three others it is an error.
+    const auto same = [&](std::size_t c, std::size_t d) { return soup.corners[c] == soup.corners[d]; };
+    if (ring.size() > 3) ring.erase(std::unique(ring.begin(), ring.end(), same), ring.end());
+    if (ring.size() > 3 && same(ring.front(), ring.back())) ring.pop_back();
+    if (ring.size() < 3) {
+      ring.resize(3);
+      std::iota(ring.begin(), ring.end(), begin);
+    }
+    const std::size_t n = ring.size();
     x.clear();
-    for (std::size_t k = 0; k < n; ++k) x.push_back(soup.positions[Z(soup.corners[begin + k])]);
+    for (const std::size_t c : ring) x.push_back(soup.positions[Z(soup.corners[c])]);
     const auto start = FanStart(x);
     if (!start && folded++ == 0) firstFolded = p;
     for (std::size_t i = 1; i + 1 < n; ++i) {
       const std::size_t first = start.value_or(0);
-      const std::size_t corners[3] = {begin + first, begin + (first + i) % n, begin + (first + i + 1) % n};
+      const std::size_t corners[3] = {ring[first], ring[(first + i) % n], ring[(first + i + 1) % n]};
       out.triangles.push_back({soup.corners[corners[0]], soup.corners[corners[1]], soup.corners[corners[2]]});
       out.polygon.push_back(p);
       if (!hasUv) continue;

@@ -11,6 +11,7 @@
 
 #include "core/text.h"
 #include "io/atomic_file.h"
+#include "mesh/mesh_problems.h"
 
 namespace percale {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLargestFile = std::uint64_t{4} << 30;  // [byte]
-constexpr double kFarthest = 1e6;                               // [m]
 
 bool IsDigit(char c) {
   return c >= '0' && c <= '9';
@@ -250,7 +250,7 @@ std::string NotANumber(std::string_view word, const std::string& what) {
 }
 
 std::optional<std::string> CoordinateProblem(double value, double scale) {
-  if (std::abs(value * scale) <= kFarthest) return std::nullopt;  // false for NaN
+  if (std::abs(value * scale) <= kFarthestVertex) return std::nullopt;  // false for NaN
   const std::string got = "expected a coordinate within 1000 km of the origin, got " + FormatNumber(value);
   if (!std::isfinite(value)) return got + "; state a finite number";
   return got + (scale == 1 ? " m; is the file in another unit? set its scale"

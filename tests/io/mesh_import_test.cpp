@@ -313,6 +313,21 @@ TEST_CASE("A polygon becomes triangles that cover it, also where it is concave")
   CHECK(Has(Said(folder, "a.obj", e), "FILE:13:1: warning: 1 polygon is so concave"));
 }
 
+TEST_CASE("Corners twice in a row, and on a line, do no harm") {
+  const Folder folder;
+  for (const char* face : {"f 1 2 3 3", "f 1 1 2 3", "f 3 1 2 3", "f 1 1 2 2 3 3 1"}) {
+    const RestMesh mesh = Good(folder.With("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\n" + std::string(face) + "\n"));
+    CHECK(mesh.triangles.size() == 1);
+  }
+  CHECK(Area(Good(folder.With("a.obj", kSquare + "v 0.5 0 0\nf 1 5 2 3 4\n"))) == doctest::Approx(1));
+  CHECK(Area(Good(folder.With("a.obj", kSquare + "f 1 2 3\nv 0.5 0.5 0\nf 1 5 3 4\n"))) == doctest::Approx(1));
+  for (const char* face : {"f 1 1 1 1 1", "f 1 1 2 2", "f 1 2 1 2", "f 1 2 1"}) {
+    const std::string said = Said(folder, "a.obj", kSquare + "f 1 2 3\n" + face + "\n");
+    CHECK_MESSAGE(Has(said, "FILE:6:1: error"), said);
+    CHECK(Has(said, "the same vertex twice"));
+  }
+}
+
 TEST_CASE("Objects and groups become groups of vertices") {
   const Folder folder;
   const RestMesh mesh =
