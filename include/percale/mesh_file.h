@@ -28,8 +28,8 @@ struct MeshOptions {
   double metresPerUv = 1;                   ///< Size of the texture, when it is the rest shape [m], > 0.
   std::optional<Vec3> warp = std::nullopt;  ///< Direction of the warp in space, of any length but 0, for triangles
                                             ///< without texture coordinates; without it, that of their first edge.
-  bool weld = false;        ///< Vertices that lie together become one, which closes seams.
-  double weldDistance = 0;  ///< Farthest that they lie apart [m]: 0, for the same place, or >= 1e-9.
+  bool weld = false;                        ///< Vertices that lie together become one, which closes seams.
+  double weldDistance = 0;                  ///< Farthest that they lie apart [m]: 0, for the same place, or >= 1e-9.
 };
 
 /// Reads a mesh by the extension of `file`:
