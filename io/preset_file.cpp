@@ -176,7 +176,7 @@ std::vector<PresetAssignment> ApplyBelow(const Preset& preset, const Origins& st
       if (givesWay) givesWay->push_back(std::move(assignment));
       continue;
     }
-    assignment.parameter->set(scene, static_cast<std::size_t>(assignment.index), assignment.value);
+    Choose(*assignment.parameter, scene, static_cast<std::size_t>(assignment.index), assignment.value);
     set.push_back(std::move(assignment));
   }
   return set;

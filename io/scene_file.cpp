@@ -11,6 +11,7 @@
 
 #include "core/text.h"
 #include "io/json_document.h"
+#include "percale/fabrics.h"
 #include "percale/parameters.h"
 
 namespace percale {
@@ -46,6 +47,7 @@ class SceneReader {
           kRoot, Severity::Error,
           "expected a scene, a JSON object such as {\"cloth\": {...}}, got " + document_.Source(kRoot));
     }
+    ReadEngine();
     JsonIndex sphere = 0, plane = 0;
     for (const JsonIndex member : document_.Children(kRoot)) {
       const std::string& key = document_.Key(member);
@@ -80,6 +82,17 @@ class SceneReader {
     diagnostics_.push_back(document_.About(value, severity, message));
   }
 
+  /// The engine comes first: what a cloth may leave out depends on it.
+  void ReadEngine() {
+    const Parameter& engine = *FindParameter("simulation", "engine");
+    const JsonIndex simulation = document_.Member(kRoot, "simulation");
+    if (simulation == 0 || document_.Kind(simulation) != JsonKind::Object) return;
+    const JsonIndex stated = document_.Member(simulation, "engine");
+    if (stated == 0 || document_.Kind(stated) != JsonKind::Text) return;
+    const Value value = document_.Text(stated);
+    if (!CheckValue(engine, value)) Choose(engine, scene_, 0, value);
+  }
+
   void ReadGroup(const ParameterGroup& group, JsonIndex value) {
     const std::string path = "/" + std::string(group.name);
     if (group.isArray && document_.Kind(value) == JsonKind::Array) {
@@ -110,7 +123,13 @@ class SceneReader {
       return;
     }
     std::set<std::string_view> stated;
-    for (const JsonIndex member : document_.Children(object)) {
+    if (group.name == "cloth" && scene_.simulation.engine == Engine::Fabric) SetFabric(scene_.cloths[index], Fabric{});
+    std::vector<JsonIndex> members = document_.Children(object);
+    std::stable_partition(members.begin(), members.end(), [&](JsonIndex member) {
+      const Parameter* parameter = FindParameter(group.name, document_.Key(member));
+      return parameter && parameter->choose;
+    });
+    for (const JsonIndex member : members) {
       const std::string& key = document_.Key(member);
       if (IsComment(key)) continue;
       const Parameter* parameter = FindParameter(group.name, key);
@@ -128,11 +147,16 @@ class SceneReader {
         failed_.insert(canonical + "/" + key);
         continue;
       }
-      parameter->set(scene_, index, *value);
+      Choose(*parameter, scene_, index, *value);
+      if (!IsHeeded(*parameter, scene_)) {
+        const std::string_view engine =
+            FindParameter("simulation", "engine")->choices[static_cast<std::size_t>(*parameter->engine)];
+        Report(member, Severity::Warning, valuePath + ": only the engine " + Quote(engine) + " heeds this");
+      }
       if (origins_) (*origins_)[canonical + "/" + key] = document_.PlaceOf(member);
     }
     for (const Parameter& parameter : Parameters()) {
-      if (parameter.group != group.name || !parameter.required || stated.count(parameter.name) > 0) continue;
+      if (parameter.group != group.name || !IsRequired(parameter, scene_) || stated.count(parameter.name) > 0) continue;
       failed_.insert(canonical + "/" + std::string(parameter.name));
       Error(object, path + "/" + std::string(parameter.name) + ": this key is missing; expected " +
                         DescribeExpected(parameter) + ", such as " + FormatValue(DefaultValue(parameter)));
@@ -381,11 +405,23 @@ std::string GroupSchema(const ParameterGroup& group) {
     properties += (properties.empty() ? "" : ",\n") + std::string("        ") + Quote(p.name) + ": {" + TypeSchema(p) +
                   ", \"title\": " + Quote(p.label) + ", \"description\": " + Quote(std::string(p.help) + unit) +
                   ", \"default\": " + FormatValue(DefaultValue(p)) + "}";
-    if (p.required) required += (required.empty() ? "" : ", ") + Quote(p.name);
+    if (p.required && group.name != "cloth") required += (required.empty() ? "" : ", ") + Quote(p.name);
   }
   return "    " + Quote(group.name) + ": {\n      \"type\": \"object\",\n      \"description\": " + Quote(group.help) +
          ",\n      \"properties\": {\n" + properties + "\n      },\n      \"required\": [" + required +
          "],\n      \"patternProperties\": {\"^_\": true},\n      \"additionalProperties\": false\n    }";
+}
+
+/// Cloths of the course state everything; those of fabric nothing: see IsRequired.
+std::string ClassicClothSchema() {
+  std::string required;
+  for (const Parameter& p : Parameters()) {
+    if (p.group == "cloth" && p.required) required += (required.empty() ? "" : ", ") + Quote(p.name);
+  }
+  return "  \"if\": {\"properties\": {\"simulation\": {\"properties\": {\"engine\": {\"const\": \"fabric\"}},\n"
+         "         \"required\": [\"engine\"]}}, \"required\": [\"simulation\"]},\n"
+         "  \"else\": {\"properties\": {\"cloth\": {\"anyOf\": [{\"type\": \"object\", \"required\": [" +
+         required + "]},\n    {\"type\": \"array\", \"items\": {\"required\": [" + required + "]}}]}}},\n";
 }
 
 }  // namespace
@@ -408,7 +444,7 @@ std::string FormatScene(const Scene& scene) {
   const auto formatObject = [&](std::string_view group, std::size_t index, const std::string& indent) {
     std::string out;
     for (const Parameter& parameter : Parameters()) {
-      if (parameter.group != group) continue;
+      if (parameter.group != group || !IsHeeded(parameter, scene)) continue;
       out += (out.empty() ? "{\n" : ",\n") + indent + "  " + Quote(parameter.name) + ": " +
              FormatValue(parameter.get(scene, index));
     }
@@ -442,8 +478,8 @@ std::string SceneSchema() {
   }
   return "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"Percale scene\",\n"
          "  \"type\": \"object\",\n  \"properties\": {\n" +
-         properties + "\n  },\n  \"required\": [" + required +
-         "],\n  \"patternProperties\": {\"^_\": true},\n  \"additionalProperties\": false,\n  \"$defs\": {\n" +
+         properties + "\n  },\n  \"required\": [" + required + "],\n" + ClassicClothSchema() +
+         "  \"patternProperties\": {\"^_\": true},\n  \"additionalProperties\": false,\n  \"$defs\": {\n" +
          definitions + "\n  }\n}\n";
 }
 

@@ -79,7 +79,7 @@ int ApplySettings(const Options& options, Session& session) {
       auto read = ReadPreset(options, "--set preset", option.substr(kPreset.size()));
       if (const int* code = std::get_if<int>(&read)) return *code;
       for (const PresetAssignment& set : Assignments(std::get<Preset>(read), session.scene)) {
-        set.parameter->set(session.scene, static_cast<std::size_t>(set.index), set.value);
+        Choose(*set.parameter, session.scene, static_cast<std::size_t>(set.index), set.value);
         session.assignments[set.path] = origin + ", " + PlaceText(set.place);
         std::string path = set.path.substr(1);
         std::replace(path.begin(), path.end(), '/', '.');

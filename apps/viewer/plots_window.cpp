@@ -25,8 +25,8 @@ constexpr int kPlots = 4;
 // Of Okabe and Ito, lighter where they would be lost on a dark ground.
 constexpr Rgb kOrange{0.902f, 0.624f, 0}, kSky{0.337f, 0.706f, 0.914f}, kGreen{0, 0.72f, 0.53f},
     kYellow{0.941f, 0.894f, 0.259f}, kBlue{0.22f, 0.55f, 0.85f}, kVermilion{0.90f, 0.42f, 0.10f},
-    kPurple{0.8f, 0.475f, 0.655f}, kGrey{0.65f, 0.65f, 0.65f};
-constexpr Rgb kStageColors[kStageCount] = {kGrey, kPurple, kOrange, kSky, kGreen, kVermilion, kYellow, kBlue};
+    kPurple{0.8f, 0.475f, 0.655f}, kGrey{0.65f, 0.65f, 0.65f}, kRed{0.78f, 0.24f, 0.24f};
+constexpr Rgb kStageColors[kStageCount] = {kGrey, kPurple, kOrange, kRed, kSky, kGreen, kVermilion, kYellow, kBlue};
 
 /// Measures what only the plots need, of the newest frame.
 void MeasureNewest(Session& session, std::vector<double>& ratios) {

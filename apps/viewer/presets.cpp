@@ -28,7 +28,7 @@ void ApplyPreset(const fs::path& file, Session& session) {
   Scene changed = session.scene();
   const std::vector<PresetAssignment> assignments = Assignments(*preset, changed);
   for (const PresetAssignment& set : assignments) {
-    set.parameter->set(changed, static_cast<std::size_t>(set.index), set.value);
+    Choose(*set.parameter, changed, static_cast<std::size_t>(set.index), set.value);
   }
   if (const Status set = session.SetScene("Preset " + preset->name, std::move(changed)); !set) {
     session.messages().Set(kSource, set.diagnostics());

@@ -164,7 +164,7 @@ bool Session::SetParameter(const Parameter& parameter, int index, const Value& v
   const ParameterGroup& group = *FindGroup(parameter.group);
   Scene changed = scene_;
   for (std::size_t i = 0; i < group.count(scene_); ++i) {
-    if (!group.isArray || index == kAll || static_cast<std::size_t>(index) == i) parameter.set(changed, i, value);
+    if (!group.isArray || index == kAll || static_cast<std::size_t>(index) == i) Choose(parameter, changed, i, value);
   }
   const Status set = ChangeSettings(std::string(parameter.label), ValuePath(parameter, index), std::move(changed));
   if (set)

@@ -1,5 +1,6 @@
 #include "apps/viewer/session_log.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cinttypes>
 #include <cmath>
@@ -115,7 +116,11 @@ LogLine DescribeSettings(const Scene& scene) {
 
 std::vector<LogLine> DescribeValues(const Scene& before, const Scene& after) {
   std::vector<LogLine> lines;
-  for (const auto& [parameter, index] : Differences(before, after)) {
+  std::vector<Difference> differences = Differences(before, after);
+  // A choice that brings others along comes before these.
+  std::stable_partition(differences.begin(), differences.end(),
+                        [](const Difference& d) { return d.parameter->choose; });
+  for (const auto& [parameter, index] : differences) {
     LogLine& line = lines.emplace_back("set");
     line.Text("path", ValuePath(*parameter, static_cast<int>(index)));
     line.Json("value", FormatValue(parameter->get(after, index)));

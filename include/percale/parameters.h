@@ -45,18 +45,25 @@ struct Parameter {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool minExclusive = false;  ///< `min` itself is out of range.
-  bool required = false;      ///< A scene file must state it.
+  bool required = false;      ///< A scene file must state it; see IsRequired.
   double typicalMin = 0;      ///< Range of a slider; equal ends: no typical range.
   double typicalMax = 0;
   bool logarithmic = false;  ///< The slider's scale.
   std::string_view help;     ///< One sentence with typical values.
   std::span<const std::string_view> choices = {};
   Effect effect = Effect::Live;
+  std::optional<Engine> engine = {};  ///< The only engine that heeds it.
   /// Reads and writes it in object `index` of its group; the index is ignored where the group is a
   /// single object. `set` takes a value that `CheckValue` accepts.
   Value (*get)(const Scene&, std::size_t index) = nullptr;
   void (*set)(Scene&, std::size_t index, const Value&) = nullptr;
+  /// Sets it, and others to what belongs to the new value, as a user's choice does: another fabric brings its
+  /// constants. Null where no other depends on it.
+  void (*choose)(Scene&, std::size_t index, const Value&) = nullptr;
 };
+
+/// Sets a parameter as a user's choice does. The value must be one that `CheckValue` accepts.
+void Choose(const Parameter& parameter, Scene& scene, std::size_t index, const Value& value);
 
 /// A kind of object in a scene file.
 struct ParameterGroup {
@@ -88,8 +95,13 @@ std::vector<Difference> Differences(const Scene& a, const Scene& b);
 /// The greatest effect of a change of settings; nothing where there is none.
 std::optional<Effect> EffectOf(const Scene& before, const Scene& after);
 
-/// The value that an object of the group has when nothing is said.
+/// The value that an object of the group has when nothing is said, in a scene for the engine that heeds it.
 Value DefaultValue(const Parameter& parameter);
+
+/// Whether the scene's engine heeds it.
+bool IsHeeded(const Parameter& parameter, const Scene& scene);
+/// Whether the scene's file must state it: cloths of the course must state everything, those of fabric nothing.
+bool IsRequired(const Parameter& parameter, const Scene& scene);
 
 /// What is wrong with `value` for `parameter` ("expected a number >= 0 N/m, got -5"), or nothing.
 std::optional<std::string> CheckValue(const Parameter& parameter, const Value& value);

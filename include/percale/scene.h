@@ -17,7 +17,8 @@ struct GridPoint {
   friend bool operator==(const GridPoint&, const GridPoint&) = default;
 };
 
-enum class Engine { Springs };
+/// How cloth is computed: as masses and springs, or as a continuum of measured stiffness.
+enum class Engine { Springs, Fabric };
 enum class Orientation { Horizontal = 0, Vertical = 1 };
 /// How a point's box becomes a bucket of the spatial map. The course's write-up proposes `Linear`
 /// (7x + 5y + 3z) and `Powers` (x^6 + y^4 + z^2), which let boxes share a bucket; `Exact` keeps one
@@ -28,6 +29,13 @@ enum class HashFunction { Exact, Linear, Powers, Brute };
 enum class PlaneResponse { Interpolate, Offset, Hold };
 /// Which tangents a cloth is drawn with: the course's constant (1, 0, 0), or along growing u.
 enum class Tangents { Constant, FromUv };
+
+/// Materials with known constants, see percale/fabrics.h.
+enum class Fabric { Cotton, Wool, WoolLycra, Polyester, Silk, Denim, Leather, Felt };
+enum class MembraneLaw { StVenantKirchhoff, NeoHookean };
+/// Bending by the second derivatives of the sheet, which are linear in the positions: for sheets that are flat at
+/// rest and hardly stretch. Or by the angles between triangles: any rest shape, and plastic folds.
+enum class BendingLaw { Quadratic, Hinges };
 
 struct ClothSettings {
   double width = 1;                                   ///< Extent [m], > 0.
@@ -45,8 +53,25 @@ struct ClothSettings {
   double density = 150;                               ///< Areal density [kg/m^2], >= 0.
   double ks = 5000;                                   ///< Spring constant [N/m], >= 0.
   int seed = 184;                                     ///< Of the vertical sheet's random z.
-  Vec3 color{1, 1, 1};                                ///< Of the front, times the look's base colour, 0..1 each.
-  Vec3 backColor{1, 1, 1};                            ///< The same of the back, where a shader tells the sides apart.
+
+  // The continuum: Engine::Fabric.
+  Fabric fabric = Fabric::Cotton;  ///< What the constants below came from; any of them may differ.
+  double stretchWarp = 261;        ///< Force per width and strain along the warp, u [N/m], > 0.
+  double stretchWeft = 261;        ///< The same along the weft, v [N/m], > 0.
+  double poissonRatio = 0.243;     ///< Narrowing over lengthening when pulled along the warp, -1..1.
+  double shear = 105;              ///< Shear modulus times thickness [N/m], > 0.
+  double bendWarp = 4e-5;          ///< Moment per width and curvature along the warp [N m], >= 0.
+  double bendWeft = 4e-5;          ///< The same along the weft [N m], >= 0.
+  double stretchDamping = 0.002;   ///< Of strain rates, as a time: stress = stiffness (strain + this * rate) [s], >= 0.
+  double bendDamping = 0.002;      ///< The same for curvature [s], >= 0.
+  double strainLimit = 0.2;        ///< Strain from which the yarns lock: the stress grows with its square, > 0.
+  double warpAngle = 0;            ///< Of the warp, turned from u towards v [degree].
+  double pressure = 0;             ///< Inside of a closed cloth above the outside [Pa].
+  MembraneLaw membraneLaw = MembraneLaw::StVenantKirchhoff;
+  BendingLaw bendingLaw = BendingLaw::Quadratic;
+
+  Vec3 color{1, 1, 1};      ///< Of the front, times the look's base colour, 0..1 each.
+  Vec3 backColor{1, 1, 1};  ///< The same of the back, where a shader tells the sides apart.
 };
 
 struct SphereSettings {
@@ -71,13 +96,17 @@ struct PinMotion {
   Vec3 displacement;              ///< [m]
 };
 
-/// A viscous wind after Provot 1995, section 3.2: each point feels
-/// drag * area * (n . (wind - velocity)) n, n the cloth's unit normal.
+/// Engine::Springs: a viscous wind after Provot 1995, section 3.2: each point feels
+/// drag * area * (n . (wind - velocity)) n, n the cloth's unit normal. Engine::Fabric: drag and lift of each
+/// triangle by the square of the speed, after Wilson, McNeal et al. 2014.
 struct WindSettings {
-  Vec3 velocity;          ///< Of the air [m/s].
-  double drag = 0;        ///< [kg/(m^2 s)], >= 0; 0: still air that resists nothing.
-  double gustiness = 0;   ///< The speed swings by this share of itself, 0..1.
-  double gustPeriod = 1;  ///< [s], > 0.
+  Vec3 velocity;                 ///< Of the air [m/s].
+  double drag = 0;               ///< [kg/(m^2 s)], >= 0; 0: still air that resists nothing.
+  double gustiness = 0;          ///< The speed swings by this share of itself, 0..1.
+  double gustPeriod = 1;         ///< [s], > 0.
+  double airDensity = 1.2;       ///< [kg/m^3], >= 0; 0: no air.
+  double dragCoefficient = 1.2;  ///< Of a sheet across the wind, >= 0.
+  double liftCoefficient = 0;    ///< Of a sheet aslant, beyond that of a flat plate, >= 0.
 };
 
 struct SimulationSettings {
@@ -88,6 +117,10 @@ struct SimulationSettings {
   bool selfCollision = true;  ///< Points of cloth keep apart, within a cloth and between cloths.
   HashFunction hash = HashFunction::Exact;
   PlaneResponse planeResponse = PlaneResponse::Interpolate;
+  int newtonIterations = 4;  ///< Engine::Fabric: at most so many per step, >= 1.
+  int linearIterations = 8;  ///< Engine::Fabric: at most so many in each of those, >= 1.
+  double tolerance = 1e-3;   ///< Engine::Fabric: a step is converged when the next correction would be this
+                             ///< share of its first, > 0.
 };
 
 /// Where the picture is taken from. By default the camera sees the cloth as the course does.

@@ -27,13 +27,14 @@ enum class Stage {
   CheckInput,     ///< Once per frame: what changed, and what has to be prepared anew.
   MoveColliders,  ///< Pins that move; then, once per step:
   ApplyForces,    ///< springs, gravity, wind, and the integration of positions,
+  Solve,          ///< Engine::Fabric: the positions at which all forces balance at the end of the step,
   FindContacts,   ///< points of cloth that share a box,
   SelfCollide,    ///< those closer than their thickness pushed apart,
   Collide,        ///< points put out of spheres and planes,
   LimitStrain,    ///< springs that are too long shortened;
   FinishStep,     ///< once per frame: statistics, and positions handed to the reader.
 };
-inline constexpr int kStageCount = 8;
+inline constexpr int kStageCount = 9;
 std::string_view StageName(Stage stage);
 
 /// Why a simulation had to stop.
@@ -61,6 +62,10 @@ struct StepReport {
   std::int64_t selfContacts = 0;                   ///< Pairs of cloth points pushed apart, summed over the steps.
   std::int64_t colliderContacts = 0;               ///< Points put back by a collider, summed over the steps.
   std::int64_t limitedSprings = 0;                 ///< Springs shortened by the strain limit, summed over the steps.
+  int newtonIterations = 0;                        ///< Engine::Fabric: corrections, summed over the steps.
+  int linearIterations = 0;                        ///< Engine::Fabric: of the linear solver, summed over the steps.
+  double residual = 0;                             ///< Engine::Fabric: last correction over the first, worst step.
+  bool converged = true;                           ///< Engine::Fabric: all steps reached simulation.tolerance.
   bool atRest = false;                   ///< No point moved more than 1 mm over a frame, for 30 frames on end.
   std::optional<Divergence> divergence;  ///< Set: the state is the last good frame, stepping is over.
 };

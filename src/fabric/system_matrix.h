@@ -140,5 +140,14 @@ inline constexpr int kRowsPerChunk = 512;
 inline int Chunks(int rows, int perChunk = kRowsPerChunk) {
   return (rows + perChunk - 1) / perChunk;
 }
+/// Calls body(i) for each of so many items that are independent of each other.
+template <class Body>
+void ForRange(const Executor& executor, std::size_t items, Body&& body) {
+  const int count = static_cast<int>(items);
+  executor.ForChunks(Chunks(count), [&](int chunk) {
+    const int begin = chunk * kRowsPerChunk, end = begin + kRowsPerChunk < count ? begin + kRowsPerChunk : count;
+    for (int i = begin; i < end; ++i) body(i);
+  });
+}
 
 }  // namespace percale::fabric

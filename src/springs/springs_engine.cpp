@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "collide/ball.h"
 #include "collide/boxes.h"
 
 namespace percale::springs {
@@ -72,6 +73,7 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
   sheet.numWidth = model.numWidth;
   sheet.numHeight = model.numHeight;
   sheet.firstPoint = pointCount_;
+  firstPoint_.push_back(pointCount_);
   pointCount_ += model.PointCount();
   sheet.kinds.assign(Index(model.PointCount() + MarkPadding(model.numWidth)), 0);
   double shortest = kInfinity;
@@ -121,6 +123,7 @@ void SpringsEngine::Configure(const Scene& scene) {
                                                                              : cloth.ks;
     }
     sheet.mass = PointMass(cloth);
+    sheet.masses.assign(Index(sheet.PointCount()), sheet.mass);
     sheet.keep = 1 - cloth.damping / 100;
     const auto first = thickness_.begin() + sheet.firstPoint;
     std::fill(first, first + sheet.PointCount(), cloth.thickness);
@@ -133,40 +136,10 @@ void SpringsEngine::Configure(const Scene& scene) {
   UpdatePins();
 }
 
-/// Pins that there were stay where they are held; what is pinned from now on is held where it is.
 void SpringsEngine::UpdatePins() {
-  const std::vector<PinnedPoint> old = std::exchange(pins_, {});
-  for (const PinnedPoint& pin : old) fixed_[Index(pin.point)] = 0;
-  pinMotionOf_.clear();
-  for (std::size_t c = 0; c < sheets_.size(); ++c) {
-    Sheet& sheet = sheets_[c];
-    sheet.firstPin = pins_.size();
-    for (const std::int32_t vertex : PinnedVertices(scene_.cloths[c])) {
-      const int point = sheet.firstPoint + vertex;
-      const Vec3 at = Get(positions_, point);
-      PinnedPoint pin{.point = point, .anchor = at, .target = at, .previousTarget = at};
-      pin.firstMotion = static_cast<int>(pinMotionOf_.size());
-      for (std::size_t m = 0; m < scene_.pinMotions.size(); ++m) {
-        const PinMotion& motion = scene_.pinMotions[m];
-        if (Index(motion.cloth) != c) continue;
-        const bool named = std::any_of(motion.points.begin(), motion.points.end(),
-                                       [&](const GridPoint& g) { return g.j * sheet.numWidth + g.i == vertex; });
-        if (named || motion.points.empty()) pinMotionOf_.push_back(static_cast<int>(m));
-      }
-      pin.motionCount = static_cast<int>(pinMotionOf_.size()) - pin.firstMotion;
-      const auto before = std::lower_bound(old.begin(), old.end(), point,
-                                           [](const PinnedPoint& p, int other) { return p.point < other; });
-      if (before != old.end() && before->point == point) {
-        pin.anchor = before->anchor;
-        pin.target = pin.previousTarget = before->target;  // a pin that is no longer carried stands still
-      } else {
-        pin.anchor = at - MotionOf(pin, time_);
-      }
-      fixed_[Index(point)] = 1;
-      pins_.push_back(pin);
-    }
-    sheet.pinCount = pins_.size() - sheet.firstPin;
-  }
+  for (const Pin& pin : pins_.All()) fixed_[Index(pin.point)] = 0;
+  pins_.Update(scene_, firstPoint_, time_, [&](int point) { return Get(positions_, point); });
+  for (const Pin& pin : pins_.All()) fixed_[Index(pin.point)] = 1;
 }
 
 void SpringsEngine::Reset() {
@@ -174,7 +147,7 @@ void SpringsEngine::Reset() {
     Put(positions_, p, start_[Index(p)]);
     Put(previous_, p, start_[Index(p)]);
   }
-  for (PinnedPoint& pin : pins_) pin.anchor = pin.target = pin.previousTarget = start_[Index(pin.point)];
+  pins_.Reset([&](int point) { return start_[Index(point)]; });
   time_ = 0;
   ForgetBoxes();
 }
@@ -219,23 +192,8 @@ std::int64_t SpringsEngine::SumChunkCounts(int chunks) const {
 
 void SpringsEngine::MoveColliders(double time) {
   time_ = time;
-  if (pinMotionOf_.empty()) return;
-  for (PinnedPoint& pin : pins_) {
-    pin.previousTarget = pin.target;
-    pin.target = pin.anchor + MotionOf(pin, time);
-    Put(positions_, pin.point, pin.target);
-  }
-}
-
-/// How far its motions have carried a pin [m].
-Vec3 SpringsEngine::MotionOf(const PinnedPoint& pin, double time) const {
-  Vec3 offset;
-  for (int m = 0; m < pin.motionCount; ++m) {
-    const PinMotion& motion = scene_.pinMotions[Index(pinMotionOf_[Index(pin.firstMotion + m)])];
-    const double s = std::clamp((time - motion.start) / (motion.end - motion.start), 0.0, 1.0);
-    offset += motion.displacement * (s * s * (3 - 2 * s));
-  }
-  return offset;
+  if (!pins_.MoveTo(time)) return;
+  for (const Pin& pin : pins_.All()) Put(positions_, pin.point, pin.target);
 }
 
 /// Several winds at once act as one: their drags add, and so do their pushes.
@@ -308,15 +266,16 @@ bool SpringsEngine::ApplyForces(double time, std::span<const Gust> gusts) {
   });
   for (int axis = 0; axis < 3; ++axis) std::swap(positions_[axis], previous_[axis]);
   HoldPins(0, pointCount_);
-  for (const PinnedPoint& pin : pins_) Put(previous_, pin.point, pin.previousTarget);
+  for (const Pin& pin : pins_.All()) Put(previous_, pin.point, pin.previousTarget);
   return SumChunkCounts(chunkCount_) == 0;
 }
 
 /// Puts the pins among the points begin <= p < end back where they are held.
 void SpringsEngine::HoldPins(int begin, int end) {
-  const auto before = [](const PinnedPoint& pin, int point) { return pin.point < point; };
-  auto pin = std::lower_bound(pins_.begin(), pins_.end(), begin, before);
-  for (; pin != pins_.end() && pin->point < end; ++pin) Put(positions_, pin->point, pin->target);
+  const std::span<const Pin> pins = pins_.All();
+  const auto before = [](const Pin& pin, int point) { return pin.point < point; };
+  auto pin = std::lower_bound(pins.begin(), pins.end(), begin, before);
+  for (; pin != pins.end() && pin->point < end; ++pin) Put(positions_, pin->point, pin->target);
 }
 
 void SpringsEngine::FindContacts() {
@@ -451,51 +410,37 @@ void SpringsEngine::Place(const Handle& handle) {
 void SpringsEngine::MovePatch(const Handle& handle, const Vec3& way, bool keepVelocity) {
   const Sheet& sheet = sheets_[Index(handle.cloth)];
   const int centre = sheet.firstPoint + handle.vertex;
-  const auto move = [&](int p, const Vec3& by) {
-    Put(positions_, p, Get(positions_, p) + by);
-    if (keepVelocity) Put(previous_, p, Get(previous_, p) + by);
-  };
-  for (std::size_t k = sheet.firstPin; k < sheet.firstPin + sheet.pinCount; ++k) {
-    PinnedPoint& pin = pins_[k];
-    if (pin.point != centre) continue;
-    move(centre, way);
-    pin.anchor += way;
-    pin.target = pin.previousTarget = Get(positions_, centre);
+  if (const Pin* pin = pins_.Find(centre)) {
+    pins_.Shift(Index(pin - pins_.All().data()), way);
+    Shift(centre, way, keepVelocity);
     return;
   }
-  const Vec3 restCentre = start_[Index(centre)];
   for (int p = sheet.firstPoint; p < sheet.firstPoint + sheet.PointCount(); ++p) {
-    const Vec3 d = start_[Index(p)] - restCentre;
-    const double share = 1 - Dot(d, d) / (handle.radius * handle.radius);
-    if (!fixed_[Index(p)] && share > 0) move(p, way * (share * share));
+    const double share = GripShare(handle, start_[Index(p)] - start_[Index(centre)]);
+    if (!fixed_[Index(p)] && share > 0) Shift(p, way * share, keepVelocity);
   }
 }
 
+void SpringsEngine::Shift(int point, const Vec3& way, bool keepVelocity) {
+  Put(positions_, point, Get(positions_, point) + way);
+  if (keepVelocity) Put(previous_, point, Get(previous_, point) + way);
+}
+
 void SpringsEngine::CollideBall(Ball& ball) {
-  touched_.clear();
-  double touchedMass = 0;
-  Vec3 momentum;  // that the points would gain if they alone gave way [kg m]
-  const auto push = [&](int p) {
-    const Vec3 d = Get(positions_, p) - ball.position;
-    const double distance = Length(d);
-    return UnitOr(d, {0, 1, 0}) * (ball.radius - distance);
-  };
-  for (const Sheet& sheet : sheets_) {
-    for (int p = sheet.firstPoint; p < sheet.firstPoint + sheet.PointCount(); ++p) {
-      const Vec3 d = Get(positions_, p) - ball.position;
-      if (Dot(d, d) >= ball.radius * ball.radius || fixed_[Index(p)]) continue;
-      touched_.push_back(p);
-      touchedMass += sheet.mass;
-      momentum += push(p) * sheet.mass;
+  struct Points {
+    SpringsEngine& e;
+    std::size_t sheet = 0;  // of the last point asked for
+    int count() const { return e.pointCount_; }
+    bool fixed(int p) const { return e.fixed_[Index(p)]; }
+    Vec3 at(int p) const { return Get(e.positions_, p); }
+    void put(int p, const Vec3& x) { Put(e.positions_, p, x); }
+    double mass(int p) {
+      while (sheet + 1 < e.sheets_.size() && p >= e.sheets_[sheet + 1].firstPoint) ++sheet;
+      while (p < e.sheets_[sheet].firstPoint) --sheet;
+      return e.sheets_[sheet].mass;
     }
-  }
-  if (touched_.empty()) return;
-  const double share = ball.mass / (ball.mass + touchedMass);
-  for (const std::int32_t p : touched_) Put(positions_, p, Get(positions_, p) + push(p) * share);
-  const Vec3 way = momentum * (-share / ball.mass);
-  ball.position += way;
-  ball.velocity += way / dt_;
-  counts_.colliderContacts += static_cast<std::int64_t>(touched_.size());
+  };
+  counts_.colliderContacts += PushApart(ball, dt_, Points{*this}, touched_);
 }
 
 void SpringsEngine::LimitStrain() {
@@ -542,9 +487,7 @@ void SpringsEngine::ReadState(int cloth, std::span<Vec3> positions, std::span<Ve
 }
 
 void SpringsEngine::ReadAnchors(int cloth, std::vector<Vec3>& anchors) const {
-  const Sheet& sheet = sheets_[Index(cloth)];
-  anchors.clear();
-  for (std::size_t k = sheet.firstPin; k < sheet.firstPin + sheet.pinCount; ++k) anchors.push_back(pins_[k].anchor);
+  pins_.ReadAnchors(Index(cloth), anchors);
 }
 
 void SpringsEngine::WriteState(int cloth, std::span<const Vec3> positions, std::span<const Vec3> previous,
@@ -556,12 +499,7 @@ void SpringsEngine::WriteState(int cloth, std::span<const Vec3> positions, std::
     Put(positions_, p, positions[v]);
     Put(previous_, p, previous[v]);
   }
-  assert(anchors.size() == sheet.pinCount);
-  for (std::size_t k = 0; k < sheet.pinCount; ++k) {
-    PinnedPoint& pin = pins_[sheet.firstPin + k];
-    pin.anchor = anchors[k];
-    pin.target = pin.previousTarget = Get(positions_, pin.point);
-  }
+  pins_.WriteAnchors(Index(cloth), anchors, [&](int point) { return Get(positions_, point); });
   time_ = time;
   ForgetBoxes();
 }

@@ -22,6 +22,7 @@
 #include "core/executor.h"
 #include "mesh/cloth_model.h"
 #include "mesh/engine_types.h"
+#include "mesh/pins.h"
 #include "percale/interaction.h"
 #include "percale/scene.h"
 #include "springs/kernels.h"
@@ -32,7 +33,6 @@ namespace percale::springs {
 struct Sheet {
   int numWidth = 0, numHeight = 0;
   int firstPoint = 0;
-  std::size_t firstPin = 0, pinCount = 0;
   AlignedVector<double>
       rest[kSpringKinds];  ///< Per point that creates the spring [m]; kNoSpringRest where there is none.
   AlignedVector<double> nearSquared[kSpringKinds];  ///< Likewise the square of the length from which on a spring
@@ -43,6 +43,7 @@ struct Sheet {
   float moveBudget = 0;                 ///< How far a point may move before it concerns springs that were not near.
   double stiffness[kSpringKinds] = {};  ///< [N/m]; 0 for kinds that are not enabled.
   double mass = 0;                      ///< Of a point [kg].
+  std::vector<double> masses;           ///< The same, for each.
   double keep = 1;                      ///< Share of the velocity kept in a step.
   int rowsPerChunk = 1;
   int firstChunk = 0;
@@ -95,23 +96,15 @@ class SpringsEngine {
   /// Of all springs of the enabled kinds: half of stiffness times the square of what they are longer or
   /// shorter than at rest [J].
   double ElasticEnergy() const;
-  double Mass(int cloth) const { return sheets_[static_cast<std::size_t>(cloth)].mass; }
+  std::span<const double> Masses(int cloth) const { return sheets_[static_cast<std::size_t>(cloth)].masses; }
   /// The first point with a coordinate out of bounds.
   VertexRef FindOutOfBounds() const;
 
  private:
-  struct PinnedPoint {
-    int point;
-    Vec3 anchor;                           // where it is without motions
-    Vec3 target;                           // where it is now
-    Vec3 previousTarget;                   // where it was one step ago
-    int firstMotion = 0, motionCount = 0;  // in pinMotionOf_
-  };
-
   void AddSheet(const ClothModel& model);
   void UpdatePins();
+  void Shift(int point, const Vec3& way, bool keepVelocity);
   void MovePatch(const Handle& handle, const Vec3& way, bool keepVelocity);
-  Vec3 MotionOf(const PinnedPoint& pin, double time) const;
   void ForgetBoxes();
   void ComputeWind(double time, std::span<const Gust> gusts);
   void HoldPins(int begin, int end);
@@ -138,8 +131,8 @@ class SpringsEngine {
   double* positions_[3] = {};
   double* previous_[3] = {};
   AlignedVector<double> windForce_[3];
-  std::vector<PinnedPoint> pins_;    // by point, ascending
-  std::vector<int> pinMotionOf_;     // indices into scene_.pinMotions
+  Pins pins_;
+  std::vector<int> firstPoint_;      // of each sheet
   std::vector<std::uint8_t> fixed_;  // per point
   std::vector<double> thickness_;    // per point [m]
   std::vector<std::uint64_t> boxKeys_;

@@ -105,7 +105,34 @@ class Checker {
     if (cloth.height / (cloth.numHeightPoints - 1) < kSmallestSpacing)
       TooSmall(c, "height", cloth.height, cloth.numHeightPoints);
     CheckPins(c);
+    if (scene_.simulation.engine == Engine::Fabric)
+      CheckFabric(c);
+    else
+      CheckSprings(c);
+  }
 
+  void CheckFabric(std::size_t c) {
+    const ClothSettings& cloth = scene_.cloths[c];
+    if (cloth.density == 0)
+      Error(Path(c, "density"), "expected a number > 0 kg/m^2, got 0: nothing could move the cloth");
+    // The weft narrows the warp by the same energy: nu_weft = nu stretch_weft / stretch_warp.
+    const double most = std::sqrt(cloth.stretchWarp / cloth.stretchWeft);
+    if (std::abs(cloth.poissonRatio) >= most) {
+      Error(
+          Path(c, "poisson_ratio"),
+          "expected a number between -" + FormatNumber(RoundDown(most, 4)) + " and " +
+              FormatNumber(RoundDown(most, 4)) +
+              ", the root of stretch_warp / stretch_weft: beyond it the cloth would gain energy by being pulled; got " +
+              FormatNumber(cloth.poissonRatio));
+    }
+    if (cloth.membraneLaw == MembraneLaw::NeoHookean && cloth.stretchWarp != cloth.stretchWeft) {
+      Warn(Path(c, "membrane_law"),
+           "neo_hookean has one stiffness for all directions, the mean of stretch_warp and stretch_weft");
+    }
+  }
+
+  void CheckSprings(std::size_t c) {
+    const ClothSettings& cloth = scene_.cloths[c];
     if (cloth.density == 0) {
       Warn(Path(c, "density"),
            "the cloth has no mass: neither gravity nor its springs move it; state a density > 0 kg/m^2");

@@ -1,56 +1,90 @@
 #include "world/engine.h"
 
+#include "fabric/fabric_engine.h"
+#include "mesh/rest_mesh.h"
 #include "springs/springs_engine.h"
 
 namespace percale {
 namespace {
 
+using fabric::FabricEngine;
 using springs::SpringsEngine;
 
-SpringsEngine& Self(void* engine) {
-  return *static_cast<SpringsEngine*>(engine);
+// What both engines do alike.
+template <class E>
+E& Self(void* engine) {
+  return *static_cast<E*>(engine);
 }
-const SpringsEngine& Self(const void* engine) {
-  return *static_cast<const SpringsEngine*>(engine);
+template <class E>
+const E& Self(const void* engine) {
+  return *static_cast<const E*>(engine);
+}
+template <class E>
+constexpr EngineTable CommonTable() {
+  EngineTable table;
+  table.configure = [](void* e, const Scene& scene) { Self<E>(e).Configure(scene); };
+  table.reset = [](void* e) { Self<E>(e).Reset(); };
+  table.moveColliders = [](void* e, double time) { Self<E>(e).MoveColliders(time); };
+  table.collideBall = [](void* e, Ball& ball) { Self<E>(e).CollideBall(ball); };
+  table.place = [](void* e, const Handle& handle) { Self<E>(e).Place(handle); };
+  table.readState = [](const void* e, int cloth, std::span<Vec3> positions, std::span<Vec3> previous) {
+    Self<E>(e).ReadState(cloth, positions, previous);
+  };
+  table.readAnchors = [](const void* e, int cloth, std::vector<Vec3>& anchors) {
+    Self<E>(e).ReadAnchors(cloth, anchors);
+  };
+  table.writeState = [](void* e, int cloth, const WorldState::Cloth& state, double time) {
+    Self<E>(e).WriteState(cloth, state.positions, state.previous, state.anchors, time);
+  };
+  table.greatestStretch = [](const void* e) { return Self<E>(e).GreatestStretch(); };
+  table.elasticEnergy = [](void* e) { return Self<E>(e).ElasticEnergy(); };
+  table.masses = [](const void* e, int cloth) { return Self<E>(e).Masses(cloth); };
+  table.findOutOfBounds = [](const void* e) { return Self<E>(e).FindOutOfBounds(); };
+  table.takeCounts = [](void* e) { return Self<E>(e).TakeCounts(); };
+  return table;
 }
 
-constexpr EngineTable kSprings = {
-    .name = "springs",
-    .create = [](const Scene& scene, std::span<const ClothModel> models,
-                 const Executor& executor) -> std::shared_ptr<void> {
-      return std::make_shared<SpringsEngine>(scene, models, executor, springs::BestKernels());
-    },
-    .configure = [](void* e, const Scene& scene) { Self(e).Configure(scene); },
-    .reset = [](void* e) { Self(e).Reset(); },
-    .moveColliders = [](void* e, double time) { Self(e).MoveColliders(time); },
-    .applyForces = [](void* e, double time, std::span<const Gust> gusts) { return Self(e).ApplyForces(time, gusts); },
-    .pull = [](void* e, const Handle& handle) { Self(e).Pull(handle); },
-    .findContacts = [](void* e) { Self(e).FindContacts(); },
-    .selfCollide = [](void* e) { Self(e).SelfCollide(); },
-    .collide = [](void* e) { Self(e).Collide(); },
-    .collideBall = [](void* e, Ball& ball) { Self(e).CollideBall(ball); },
-    .limitStrain = [](void* e) { Self(e).LimitStrain(); },
-    .place = [](void* e, const Handle& handle) { Self(e).Place(handle); },
-    .readState = [](const void* e, int cloth, std::span<Vec3> positions,
-                    std::span<Vec3> previous) { Self(e).ReadState(cloth, positions, previous); },
-    .readAnchors = [](const void* e, int cloth, std::vector<Vec3>& anchors) { Self(e).ReadAnchors(cloth, anchors); },
-    .writeState = [](void* e, int cloth, const WorldState::Cloth& state,
-                     double time) { Self(e).WriteState(cloth, state.positions, state.previous, state.anchors, time); },
-    .greatestStretch = [](const void* e) { return Self(e).GreatestStretch(); },
-    .elasticEnergy = [](const void* e) { return Self(e).ElasticEnergy(); },
-    .mass = [](const void* e, int cloth) { return Self(e).Mass(cloth); },
-    .findOutOfBounds = [](const void* e) { return Self(e).FindOutOfBounds(); },
-    .takeCounts = [](void* e) { return Self(e).TakeCounts(); },
-};
+constexpr EngineTable SpringsTable() {
+  EngineTable table = CommonTable<SpringsEngine>();
+  table.name = "springs";
+  table.create = [](const Scene& scene, std::span<const ClothModel> models,
+                    const Executor& executor) -> std::shared_ptr<void> {
+    return std::make_shared<SpringsEngine>(scene, models, executor, springs::BestKernels());
+  };
+  table.applyForces = [](void* e, double time, std::span<const Gust> gusts, std::span<const Handle> handles) {
+    const bool inBounds = Self<SpringsEngine>(e).ApplyForces(time, gusts);
+    for (const Handle& handle : handles) Self<SpringsEngine>(e).Pull(handle);
+    return inBounds;
+  };
+  table.findContacts = [](void* e) { Self<SpringsEngine>(e).FindContacts(); };
+  table.selfCollide = [](void* e) { Self<SpringsEngine>(e).SelfCollide(); };
+  table.collide = [](void* e) { Self<SpringsEngine>(e).Collide(); };
+  table.limitStrain = [](void* e) { Self<SpringsEngine>(e).LimitStrain(); };
+  return table;
+}
+
+constexpr EngineTable FabricTable() {
+  EngineTable table = CommonTable<FabricEngine>();
+  table.name = "fabric";
+  table.create = [](const Scene& scene, std::span<const ClothModel>,
+                    const Executor& executor) -> std::shared_ptr<void> {
+    std::vector<RestMesh> meshes;
+    for (const ClothSettings& cloth : scene.cloths) meshes.push_back(MakeGridMesh(cloth));
+    return std::make_shared<FabricEngine>(scene, meshes, executor);
+  };
+  table.applyForces = [](void* e, double time, std::span<const Gust> gusts, std::span<const Handle> handles) {
+    return Self<FabricEngine>(e).ApplyForces(time, gusts, handles);
+  };
+  table.solve = [](void* e) { Self<FabricEngine>(e).Solve(); };
+  return table;
+}
+
+constexpr EngineTable kSprings = SpringsTable(), kFabric = FabricTable();
 
 }  // namespace
 
 const EngineTable& FindEngine(Engine engine) {
-  switch (engine) {
-    case Engine::Springs:
-      break;
-  }
-  return kSprings;
+  return engine == Engine::Fabric ? kFabric : kSprings;
 }
 
 }  // namespace percale

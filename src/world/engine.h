@@ -18,32 +18,33 @@ namespace percale {
 
 struct EngineTable {
   std::string_view name;
-  std::shared_ptr<void> (*create)(const Scene&, std::span<const ClothModel>, const Executor&);
-  void (*configure)(void*, const Scene&);
-  void (*reset)(void*);
+  std::shared_ptr<void> (*create)(const Scene&, std::span<const ClothModel>, const Executor&) = nullptr;
+  void (*configure)(void*, const Scene&) = nullptr;
+  void (*reset)(void*) = nullptr;
 
   // The stages of one step that ends at `time` [s].
-  void (*moveColliders)(void*, double time);
-  bool (*applyForces)(void*, double time, std::span<const Gust>);  ///< False: a coordinate went out of bounds.
-  void (*pull)(void*, const Handle&);                              ///< Part of applyForces.
-  void (*findContacts)(void*);
-  void (*selfCollide)(void*);
-  void (*collide)(void*);
-  void (*collideBall)(void*, Ball&);  ///< Part of collide: cloth and ball push each other apart.
-  void (*limitStrain)(void*);
+  void (*moveColliders)(void*, double time) = nullptr;
+  /// False: a coordinate went out of bounds.
+  bool (*applyForces)(void*, double time, std::span<const Gust>, std::span<const Handle>) = nullptr;
+  void (*solve)(void*) = [](void*) {};
+  void (*findContacts)(void*) = [](void*) {};
+  void (*selfCollide)(void*) = [](void*) {};
+  void (*collide)(void*) = [](void*) {};
+  void (*collideBall)(void*, Ball&) = nullptr;  ///< Part of collide: cloth and ball push each other apart.
+  void (*limitStrain)(void*) = [](void*) {};
 
-  void (*place)(void*, const Handle&);  ///< Between two frames: see World::Place.
+  void (*place)(void*, const Handle&) = nullptr;  ///< Between two frames: see World::Place.
 
   // What a frame leaves behind.
-  void (*readState)(const void*, int cloth, std::span<Vec3> positions, std::span<Vec3> previous);
-  void (*readAnchors)(const void*, int cloth, std::vector<Vec3>& anchors);  ///< Of the pins, see WorldState.
+  void (*readState)(const void*, int cloth, std::span<Vec3> positions, std::span<Vec3> previous) = nullptr;
+  void (*readAnchors)(const void*, int cloth, std::vector<Vec3>& anchors) = nullptr;  ///< Of the pins, see WorldState.
   /// The state of one cloth at `time` [s], which may be that of another World with the same cloths.
-  void (*writeState)(void*, int cloth, const WorldState::Cloth&, double time);
-  Stretch (*greatestStretch)(const void*);
-  double (*elasticEnergy)(const void*);    ///< [J]
-  double (*mass)(const void*, int cloth);  ///< Of one point [kg].
-  VertexRef (*findOutOfBounds)(const void*);
-  EngineCounts (*takeCounts)(void*);  ///< Since the last call.
+  void (*writeState)(void*, int cloth, const WorldState::Cloth&, double time) = nullptr;
+  Stretch (*greatestStretch)(const void*) = nullptr;
+  double (*elasticEnergy)(void*) = nullptr;                             ///< [J]
+  std::span<const double> (*masses)(const void*, int cloth) = nullptr;  ///< Of its vertices [kg].
+  VertexRef (*findOutOfBounds)(const void*) = nullptr;
+  EngineCounts (*takeCounts)(void*) = nullptr;  ///< Since the last call.
 };
 
 const EngineTable& FindEngine(Engine engine);

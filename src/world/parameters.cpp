@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/text.h"
+#include "percale/fabrics.h"
 
 namespace percale {
 namespace {
@@ -21,11 +22,15 @@ constexpr double kLargestInt = 2147483647;
 constexpr double kWorthNaming = 1e4;
 
 // Names of the values of each enumeration, in the enumeration's order.
-constexpr std::string_view kEngines[] = {"springs"};
+constexpr std::string_view kEngines[] = {"springs", "fabric"};
 constexpr std::string_view kHashFunctions[] = {"exact", "linear", "powers", "brute"};
 constexpr std::string_view kPlaneResponses[] = {"interpolate", "offset", "hold"};
 constexpr std::string_view kTangents[] = {"constant", "from_uv"};
 constexpr std::string_view kOrientations[] = {"horizontal", "vertical"};
+constexpr std::string_view kFabricNames[] = {"cotton", "wool",  "wool_lycra", "polyester",
+                                             "silk",   "denim", "leather",    "felt"};
+constexpr std::string_view kMembraneLaws[] = {"st_venant_kirchhoff", "neo_hookean"};
+constexpr std::string_view kBendingLaws[] = {"quadratic", "hinges"};
 
 constexpr std::span<const std::string_view> NamesOf(Engine) {
   return kEngines;
@@ -42,6 +47,15 @@ constexpr std::span<const std::string_view> NamesOf(Tangents) {
 constexpr std::span<const std::string_view> NamesOf(Orientation) {
   return kOrientations;
 }
+constexpr std::span<const std::string_view> NamesOf(Fabric) {
+  return kFabricNames;
+}
+constexpr std::span<const std::string_view> NamesOf(MembraneLaw) {
+  return kMembraneLaws;
+}
+constexpr std::span<const std::string_view> NamesOf(BendingLaw) {
+  return kBendingLaws;
+}
 
 /// What the table says about a parameter beside where it lives.
 struct Facts {
@@ -53,6 +67,7 @@ struct Facts {
   double typicalMin = 0, typicalMax = 0;
   bool logarithmic = false;
   std::optional<Effect> effect = {};  ///< Nothing: the group's.
+  std::optional<Engine> engine = {};
   std::string_view help = {};
 };
 
@@ -145,11 +160,40 @@ struct RowOf {
             f.help,
             choices,
             f.effect.value_or(effect),
+            f.engine,
             &Get<Owner, Field>,
             &Set<Owner, Field>};
   }
 };
 
+/// The same row, with what a choice of it brings along.
+Parameter WithChoice(Parameter row, void (*choose)(Scene&, std::size_t, const Value&)) {
+  row.choose = choose;
+  return row;
+}
+
+void ChooseFabric(Scene& scene, std::size_t index, const Value& value) {
+  Set<&Scene::cloths, &ClothSettings::fabric>(scene, index, value);
+  SetFabric(scene.cloths[index], scene.cloths[index].fabric);
+}
+
+/// Another engine: the steps and the cloths that it is made for.
+void ChooseEngine(Scene& scene, std::size_t index, const Value& value) {
+  SimulationSettings& simulation = scene.simulation;
+  const Engine before = simulation.engine;
+  Set<&Scene::simulation, &SimulationSettings::engine>(scene, index, value);
+  if (simulation.engine == before) return;
+  const bool fabric = simulation.engine == Engine::Fabric;
+  const SimulationSettings springs;
+  simulation.framesPerSecond = fabric ? 60 : springs.framesPerSecond;
+  simulation.stepsPerFrame = fabric ? 1 : springs.stepsPerFrame;
+  for (ClothSettings& cloth : scene.cloths) {
+    if (fabric)
+      SetFabric(cloth, cloth.fabric);
+    else
+      cloth.density = ClothSettings().density;
+  }
+}
 template <auto Field>
 constexpr RowOf<&Scene::cloths, Field> Cloth{"cloth"};
 template <auto Field>
@@ -170,6 +214,7 @@ constexpr RowOf<&Scene::look, Field> Look{"look", Effect::View};
 // clang-format off
 std::vector<Parameter> MakeTable() {
   constexpr Effect kRebuild = Effect::Rebuild;
+  constexpr Engine kSprings = Engine::Springs, kFabric = Engine::Fabric;
   using C = ClothSettings;
   using S = SimulationSettings;
   return {
@@ -200,22 +245,62 @@ std::vector<Parameter> MakeTable() {
     Cloth<&C::pinned>({.name = "pinned", .label = "Pinned points",
       .help = "Immovable points, each as [i, j]: column along the width, row along the height, from 0."}),
     Cloth<&C::enableStructural>({.name = "enable_structural", .label = "Structural", .required = true,
-      .help = "Springs to the neighbours left and up."}),
+      .engine = kSprings, .help = "Springs to the neighbours left and up."}),
     Cloth<&C::enableShearing>({.name = "enable_shearing", .label = "Shearing", .required = true,
-      .help = "Springs to the diagonal neighbours."}),
+      .engine = kSprings, .help = "Springs to the diagonal neighbours."}),
     Cloth<&C::enableBending>({.name = "enable_bending", .label = "Bending", .required = true,
-      .help = "Springs, five times weaker, to the second neighbours left and up."}),
+      .engine = kSprings, .help = "Springs, five times weaker, to the second neighbours left and up."}),
     Cloth<&C::damping>({.name = "damping", .label = "Damping", .unit = "%", .min = 0, .max = 100, .required = true,
       .typicalMin = 0, .typicalMax = 1,
-      .help = "Share of the velocity lost per step; 0.2 settles in seconds, 1 falls like a parachute."}),
+      .engine = kSprings, .help = "Share of the velocity lost per step; 0.2 settles in seconds, 1 falls like a parachute."}),
     Cloth<&C::density>({.name = "density", .label = "Density", .unit = "kg/m^2", .min = 0, .max = 1e9, .required = true,
       .typicalMin = 1, .typicalMax = 500000, .logarithmic = true,
       .help = "Mass per area; the course uses 150, which its panel shows as 15 g/cm^2."}),
     Cloth<&C::ks>({.name = "ks", .label = "Spring constant", .unit = "N/m", .min = 0, .max = 1e12, .required = true,
       .typicalMin = 1, .typicalMax = 100000, .logarithmic = true,
-      .help = "Stiffness of the springs; 500 sags like a net, 5000 like cloth, 50000 is stiff."}),
+      .engine = kSprings, .help = "Stiffness of the springs; 500 sags like a net, 5000 like cloth, 50000 is stiff."}),
     Cloth<&C::seed>({.name = "seed", .label = "Seed", .min = 0, .max = kLargestInt,
       .typicalMin = 0, .typicalMax = 1000, .effect = kRebuild, .help = "Of the standing sheet's random z."}),
+    WithChoice(Cloth<&C::fabric>({.name = "fabric", .label = "Fabric", .engine = kFabric,
+      .help = "Material; sets density, stiffness and damping to what was measured, and any of them may be changed."}),
+      &ChooseFabric),
+    Cloth<&C::stretchWarp>({.name = "stretch_warp", .label = "Stretch, warp", .unit = "N/m", .min = 0, .max = 1e9,
+      .minExclusive = true, .typicalMin = 10, .typicalMax = 10000, .logarithmic = true, .engine = kFabric,
+      .help = "Force per width and strain along the warp; wool 97, cotton 261, leather 4000."}),
+    Cloth<&C::stretchWeft>({.name = "stretch_weft", .label = "Stretch, weft", .unit = "N/m", .min = 0, .max = 1e9,
+      .minExclusive = true, .typicalMin = 10, .typicalMax = 10000, .logarithmic = true, .engine = kFabric,
+      .help = "The same along the weft, across the warp."}),
+    Cloth<&C::poissonRatio>({.name = "poisson_ratio", .label = "Poisson ratio", .min = -0.99, .max = 0.99,
+      .typicalMin = 0, .typicalMax = 0.5, .engine = kFabric,
+      .help = "Narrowing over lengthening when pulled along the warp; cotton 0.24."}),
+    Cloth<&C::shear>({.name = "shear", .label = "Shear", .unit = "N/m", .min = 0, .max = 1e9, .minExclusive = true,
+      .typicalMin = 5, .typicalMax = 5000, .logarithmic = true, .engine = kFabric,
+      .help = "Force per width and angle of shear; a loose weave 30, cotton 105."}),
+    Cloth<&C::bendWarp>({.name = "bend_warp", .label = "Bend, warp", .unit = "N m", .min = 0, .max = 1e3,
+      .typicalMin = 1e-6, .typicalMax = 1e-2, .logarithmic = true, .engine = kFabric,
+      .help = "Moment per width and curvature along the warp; silk 4e-6, cotton 3e-5, denim 2e-4."}),
+    Cloth<&C::bendWeft>({.name = "bend_weft", .label = "Bend, weft", .unit = "N m", .min = 0, .max = 1e3,
+      .typicalMin = 1e-6, .typicalMax = 1e-2, .logarithmic = true, .engine = kFabric,
+      .help = "The same along the weft, across the warp."}),
+    Cloth<&C::stretchDamping>({.name = "stretch_damping", .label = "Stretch damping", .unit = "s", .min = 0, .max = 1e3,
+      .typicalMin = 0, .typicalMax = 0.05, .engine = kFabric,
+      .help = "Stress is stiffness times (strain + this time its rate); it leaves rigid motion alone."}),
+    Cloth<&C::bendDamping>({.name = "bend_damping", .label = "Bend damping", .unit = "s", .min = 0, .max = 1e3,
+      .typicalMin = 0, .typicalMax = 0.05, .engine = kFabric,
+      .help = "The same for bending."}),
+    Cloth<&C::strainLimit>({.name = "strain_limit", .label = "Strain limit", .min = 0, .max = 1e3, .minExclusive = true,
+      .typicalMin = 0.01, .typicalMax = 1, .engine = kFabric,
+      .help = "Strain from which the yarns lock and the stress grows with the square of the rest; cotton 0.2."}),
+    Cloth<&C::warpAngle>({.name = "warp_angle", .label = "Warp angle", .unit = "degree", .min = -360, .max = 360,
+      .typicalMin = -90, .typicalMax = 90, .effect = kRebuild, .engine = kFabric,
+      .help = "Of the warp, turned from the width towards the height; 45 is cut on the bias."}),
+    Cloth<&C::pressure>({.name = "pressure", .label = "Pressure", .unit = "Pa", .min = -1e6, .max = 1e6,
+      .typicalMin = 0, .typicalMax = 100, .engine = kFabric,
+      .help = "Inside of a closed cloth above the outside; a soft cushion 10."}),
+    Cloth<&C::membraneLaw>({.name = "membrane_law", .label = "Membrane", .engine = kFabric,
+      .help = "st_venant_kirchhoff: warp and weft differ; neo_hookean: one stiffness, for rubber."}),
+    Cloth<&C::bendingLaw>({.name = "bending_law", .label = "Bending law", .effect = kRebuild, .engine = kFabric,
+      .help = "quadratic: flat at rest; hinges: by angles, for any rest shape and for folds that stay."}),
     Cloth<&C::color>({.name = "color", .label = "Colour", .min = 0, .max = 1,
       .typicalMin = 0, .typicalMax = 1, .help = "Of this cloth: red, green, blue, times the base colour of the look."}),
     Cloth<&C::backColor>({.name = "back_color", .label = "Colour of the back", .min = 0, .max = 1,
@@ -257,15 +342,22 @@ std::vector<Parameter> MakeTable() {
       .typicalMin = -20, .typicalMax = 20, .help = "Of the air; a breeze is 5, a storm 25."}),
     Wind<&WindSettings::drag>({.name = "drag", .label = "Drag", .unit = "kg/(m^2 s)", .min = 0, .max = 1e6,
       .typicalMin = 0, .typicalMax = 1000,
-      .help = "Force per area and speed across the cloth; 0: the air resists nothing."}),
+      .engine = kSprings, .help = "Force per area and speed across the cloth; 0: the air resists nothing."}),
     Wind<&WindSettings::gustiness>({.name = "gustiness", .label = "Gustiness", .min = 0, .max = 1,
       .typicalMin = 0, .typicalMax = 1, .help = "Share of itself by which the wind's speed swings."}),
     Wind<&WindSettings::gustPeriod>({.name = "gust_period", .label = "Gust period", .unit = "s", .min = 0,
       .max = kLatest, .minExclusive = true,
       .typicalMin = 0.1, .typicalMax = 10, .help = "Time from gust to gust."}),
+    Wind<&WindSettings::airDensity>({.name = "air_density", .label = "Air density", .unit = "kg/m^3", .min = 0,
+      .max = 1e5, .typicalMin = 0, .typicalMax = 2, .engine = kFabric, .help = "1.2 at sea level; 0: no air."}),
+    Wind<&WindSettings::dragCoefficient>({.name = "drag_coefficient", .label = "Drag coefficient", .min = 0, .max = 1e3,
+      .typicalMin = 0, .typicalMax = 3, .engine = kFabric, .help = "Of a sheet across the wind; a plate has 1.2."}),
+    Wind<&WindSettings::liftCoefficient>({.name = "lift_coefficient", .label = "Lift coefficient", .min = 0, .max = 1e3,
+      .typicalMin = 0, .typicalMax = 3, .engine = kFabric, .help = "Of a sheet aslant to the wind, beyond what a flat plate has by its drag."}),
 
-    Simulation<&S::engine>({.name = "engine", .label = "Engine", .effect = kRebuild,
-      .help = "springs: the classic simulator of masses and springs."}),
+    WithChoice(Simulation<&S::engine>({.name = "engine", .label = "Engine", .effect = kRebuild,
+      .help = "springs: the classic simulator; fabric: a continuum of measured stiffness. Sets its usual steps."}),
+      &ChooseEngine),
     Simulation<&S::framesPerSecond>({.name = "frames_per_second", .label = "Frames/s", .unit = "1/s", .min = 1,
       .max = kMostSteps,
       .typicalMin = 10, .typicalMax = 240, .help = "Pictures per simulated second."}),
@@ -278,9 +370,19 @@ std::vector<Parameter> MakeTable() {
     Simulation<&S::selfCollision>({.name = "self_collision", .label = "Self-collision",
       .help = "Points of cloth keep apart, within a cloth and between cloths."}),
     Simulation<&S::hash>({.name = "hash", .label = "Hash function",
-      .help = "How the map of boxes is kept: exact; the write-up's linear and powers, which share boxes; brute force."}),
+      .engine = kSprings, .help = "How the map of boxes is kept: exact; the write-up's linear and powers, which share boxes; brute force."}),
     Simulation<&S::planeResponse>({.name = "plane_response", .label = "Plane response",
-      .help = "Where a point that crossed is put: interpolate: where it crossed; offset: above its foot; hold: back."}),
+      .engine = kSprings, .help = "Where a point that crossed is put: interpolate: where it crossed; offset: above its foot; hold: back."}),
+
+    Simulation<&S::newtonIterations>({.name = "newton_iterations", .label = "Newton iterations", .min = 1, .max = 1000,
+      .typicalMin = 1, .typicalMax = 20, .engine = kFabric,
+      .help = "At most so many corrections of a step; 4 keeps up with real time."}),
+    Simulation<&S::linearIterations>({.name = "linear_iterations", .label = "Linear iterations", .min = 1, .max = 10000,
+      .typicalMin = 1, .typicalMax = 50, .engine = kFabric,
+      .help = "At most so many iterations of the linear solver for each correction."}),
+    Simulation<&S::tolerance>({.name = "tolerance", .label = "Tolerance", .min = 0, .max = 1, .minExclusive = true,
+      .typicalMin = 1e-6, .typicalMax = 0.1, .logarithmic = true, .engine = kFabric,
+      .help = "A step has converged when the next correction would be this share of the first."}),
 
     Camera<&CameraSettings::automatic>({.name = "automatic", .label = "Automatic",
       .help = "Look at the cloths as the course does; false as soon as another key of the camera is stated."}),
@@ -331,7 +433,7 @@ constexpr ParameterGroup Group(std::string_view name, bool required, std::string
 }
 
 constexpr ParameterGroup kGroups[] = {
-    Group<&Scene::cloths>("cloth", true, "A sheet of cloth: a grid of points joined by springs."),
+    Group<&Scene::cloths>("cloth", true, "A sheet of cloth."),
     Group<&Scene::spheres>("sphere", false, "A ball that cloth rests on."),
     Group<&Scene::planes>("plane", false, "An endless flat wall or floor."),
     Group<&Scene::pinMotions>("pin_motion", false, "Carries pinned points of a cloth along a straight line."),
@@ -546,6 +648,17 @@ Value DefaultValue(const Parameter& parameter) {
   return parameter.get(scene, 0);
 }
 
+void Choose(const Parameter& parameter, Scene& scene, std::size_t index, const Value& value) {
+  (parameter.choose ? parameter.choose : parameter.set)(scene, index, value);
+}
+
+bool IsHeeded(const Parameter& parameter, const Scene& scene) {
+  return !parameter.engine || *parameter.engine == scene.simulation.engine;
+}
+bool IsRequired(const Parameter& parameter, const Scene& scene) {
+  return parameter.required && (parameter.group != "cloth" || scene.simulation.engine == Engine::Springs);
+}
+
 std::optional<std::string> CheckValue(const Parameter& p, const Value& value) {
   const auto wrong = [&](bool all) { return std::optional(Found(p, all, value)); };
   switch (p.kind) {
@@ -664,7 +777,7 @@ Result<std::vector<std::string>> ApplyAssignment(Scene& scene, std::string_view 
 
   std::vector<std::string> paths;
   for (std::size_t i = begin; i < end; ++i) {
-    parameter->set(scene, i, *value);
+    Choose(*parameter, scene, i, *value);
     const std::string object = "/" + std::string(groupName) + (group->isArray ? "/" + std::to_string(i) : "");
     paths.push_back(object + "/" + std::string(name));
   }

@@ -142,17 +142,17 @@ void World::Impl::FinishStep() {
   report.kineticEnergy = report.potentialEnergy = 0;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const Cloth& cloth = cloths[c];
-    double squaredSpeeds = 0;
-    Vec3 sum;
+    const std::span<const double> masses = engine->masses(engineState.get(), static_cast<int>(c));
+    double kinetic = 0;  // twice
+    Vec3 weighted;
     for (std::size_t v = 0; v < cloth.positions.size(); ++v) {
       const Vec3 way = cloth.positions[v] - cloth.lastFrame[v];
       move = std::max(move, Dot(way, way));
-      squaredSpeeds += Dot(cloth.velocities[v], cloth.velocities[v]);
-      sum += cloth.positions[v];
+      kinetic += masses[v] * Dot(cloth.velocities[v], cloth.velocities[v]);
+      weighted += cloth.positions[v] * masses[v];
     }
-    const double mass = engine->mass(engineState.get(), static_cast<int>(c));
-    report.kineticEnergy += 0.5 * mass * squaredSpeeds;
-    report.potentialEnergy -= mass * Dot(scene->simulation.gravity, sum);
+    report.kineticEnergy += 0.5 * kinetic;
+    report.potentialEnergy -= Dot(scene->simulation.gravity, weighted);
   }
   report.elasticEnergy = engine->elasticEnergy(engineState.get());
   report.greatestMove = std::sqrt(move);
@@ -160,6 +160,10 @@ void World::Impl::FinishStep() {
   report.selfContacts = counts.selfContacts;
   report.colliderContacts = counts.colliderContacts;
   report.limitedSprings = counts.limitedSprings;
+  report.newtonIterations = counts.newtonIterations;
+  report.linearIterations = counts.linearIterations;
+  report.residual = counts.residual;
+  report.converged = counts.converged;
   restFrames = report.greatestMove <= kRestMove ? restFrames + 1 : 0;
   report.atRest = restFrames >= kRestFrames;
 }
@@ -187,10 +191,11 @@ const StepReport& World::Step() {
     engine.moveColliders(state, report.time);
     MoveBalls(*w.scene, dt, w.balls);
     clock.Finished(Stage::MoveColliders);
-    const bool inBounds = engine.applyForces(state, report.time, w.gusts);
-    for (const Handle& handle : w.handles) engine.pull(state, handle);
+    const bool inBounds = engine.applyForces(state, report.time, w.gusts, w.handles);
     clock.Finished(Stage::ApplyForces);
     if (!inBounds) break;
+    engine.solve(state);
+    clock.Finished(Stage::Solve);
     engine.findContacts(state);
     clock.Finished(Stage::FindContacts);
     engine.selfCollide(state);
@@ -379,8 +384,9 @@ std::uint64_t World::StateHash() const {
 }
 
 std::string_view StageName(Stage stage) {
-  constexpr std::string_view names[kStageCount] = {"CheckInput",  "MoveColliders", "ApplyForces", "FindContacts",
-                                                   "SelfCollide", "Collide",       "LimitStrain", "FinishStep"};
+  constexpr std::string_view names[kStageCount] = {"CheckInput", "MoveColliders", "ApplyForces",
+                                                   "Solve",      "FindContacts",  "SelfCollide",
+                                                   "Collide",    "LimitStrain",   "FinishStep"};
   return names[static_cast<std::size_t>(stage)];
 }
 

@@ -1,0 +1,243 @@
+#include "fabric/fabric_engine.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "collide/ball.h"
+
+namespace percale::fabric {
+namespace {
+
+/// Beyond that coordinates are lost [m]; as with the springs.
+constexpr double kBound = 1e6;
+/// Drag coefficient of a sheet along the wind (Hoerner 1965, "Fluid-dynamic drag", chapter 2).
+constexpr double kSkinDrag = 0.01;
+
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes, const Executor& executor)
+    : executor_(executor), scene_(scene), model_(BuildModel(scene, meshes)), solver_(model_, executor) {
+  const std::size_t count = Index(model_.vertexCount);
+  free_.assign(count, 1);
+  position_ = previous_ = predicted_ = next_ = model_.start;
+  loads_.resize(count);
+  windLoads_.resize(model_.triangles.size());
+  Configure(scene);
+  Reset();
+}
+
+void FabricEngine::Configure(const Scene& scene) {
+  scene_ = scene;
+  h_ = scene.TimeStep();
+  TakeMaterials(scene, model_);
+  UpdatePins();
+  solver_.SetUp(h_, free_);
+}
+
+void FabricEngine::UpdatePins() {
+  pins_.Update(scene_, std::span(model_.firstVertex).first(Index(model_.Cloths())), time_,
+               [&](int v) { return position_[Index(v)]; });
+  std::fill(free_.begin(), free_.end(), std::uint8_t{1});
+  for (const Pin& pin : pins_.All()) free_[Index(pin.point)] = 0;
+}
+
+void FabricEngine::Reset() {
+  position_ = previous_ = model_.start;
+  pins_.Reset([&](int v) { return model_.start[Index(v)]; });
+  time_ = 0;
+}
+
+void FabricEngine::MoveColliders(double time) {
+  time_ = time;
+  pins_.MoveTo(time);
+}
+
+bool FabricEngine::ApplyForces(double time, std::span<const Gust> gusts, std::span<const Handle> handles) {
+  const Vec3 fall = scene_.simulation.gravity * (h_ * h_);
+  bool inBounds = true;
+  for (std::size_t v = 0; v < position_.size(); ++v) {
+    predicted_[v] = position_[v] + (position_[v] - previous_[v]) + fall;
+    loads_[v] = {};
+    inBounds = inBounds && std::abs(predicted_[v].x) <= kBound && std::abs(predicted_[v].y) <= kBound &&
+               std::abs(predicted_[v].z) <= kBound;
+  }
+  Blow(time, gusts);
+  Hold(handles);
+  return inBounds;
+}
+
+/// Drag and lift of the air on each triangle, a third of it on each corner, which resists by its own way.
+void FabricEngine::Blow(double time, std::span<const Gust> gusts) {
+  const WindSettings& wind = scene_.wind;
+  Vec3 air = wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
+  bool gusty = false;
+  for (const Gust& gust : gusts) {
+    const double phase = std::numbers::pi * (time - gust.start) / gust.duration;
+    if (phase <= 0 || phase >= std::numbers::pi) continue;
+    air += gust.velocity * (std::sin(phase) * std::sin(phase));
+    gusty = true;
+  }
+  const double density = wind.airDensity > 0 || !gusty ? wind.airDensity : WindSettings().airDensity;
+  if (density == 0) return;
+  const Air<double> properties{density, wind.dragCoefficient, kSkinDrag, wind.liftCoefficient};
+  ForRange(executor_, model_.triangles.size(), [&](int t) {
+    const Triangle& tri = model_.triangles[Index(t)];
+    const auto at = [&](std::int32_t v) { return From<double>(position_[Index(v)]); };
+    const auto way = [&](std::int32_t v) { return position_[Index(v)] - previous_[Index(v)]; };
+    const Vec3 velocity = (way(tri.a) + way(tri.b) + way(tri.c)) / (3 * h_);
+    windLoads_[Index(t)] =
+        MakeWindLoad(properties, From<double>(air), at(tri.a), at(tri.b), at(tri.c), From<double>(velocity));
+  });
+  ForRange(executor_, position_.size(), [&](int v) {
+    for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
+      const WindLoad<double>& load = windLoads_[Index(model_.corners.entry[Index(e)] / 3)];
+      loads_[Index(v)].stiffness += load.drag * (1 / (3 * h_));
+      loads_[Index(v)].force += ToVec3(load.drag * load.wind + load.lift) / 3;
+    }
+  });
+}
+
+/// Springs from the vertices around a grip to where it draws them, critically damped.
+void FabricEngine::Hold(std::span<const Handle> handles) {
+  for (const Handle& handle : handles) {
+    const int first = model_.firstVertex[Index(handle.cloth)], end = model_.firstVertex[Index(handle.cloth) + 1];
+    const int centre = first + handle.vertex;
+    const Vec3 way = handle.target - position_[Index(centre)];
+    if (const Pin* pin = pins_.Find(centre)) {
+      pins_.Shift(Index(pin - pins_.All().data()), way);
+      continue;
+    }
+    const double w = 2 * std::numbers::pi * handle.frequency;
+    for (int v = first; v < end; ++v) {
+      const double share = GripShare(handle, model_.start[Index(v)] - model_.start[Index(centre)]);
+      if (share == 0 || !free_[Index(v)]) continue;
+      const double stiffness = model_.mass[Index(v)] * share * w * w;
+      loads_[Index(v)].stiffness += Diagonal(stiffness + 2 * model_.mass[Index(v)] * share * w / h_);
+      loads_[Index(v)].force += way * stiffness;
+    }
+  }
+}
+
+void FabricEngine::Solve() {
+  for (std::size_t v = 0; v < position_.size(); ++v) {
+    next_[v] = position_[v] + (position_[v] - previous_[v]);
+  }
+  for (const Pin& pin : pins_.All()) next_[Index(pin.point)] = predicted_[Index(pin.point)] = pin.target;
+  Objective& objective = solver_.objective();
+  objective.Begin({.h = h_, .start = position_, .predicted = predicted_, .loads = loads_, .free = free_});
+  // Inertia may lead into much strain: then the better start is where the cloth is.
+  std::swap(previous_, next_);
+  const double ahead = objective.Energy(previous_);
+  next_ = position_;
+  for (const Pin& pin : pins_.All()) next_[Index(pin.point)] = pin.target;
+  if (ahead < objective.Energy(next_)) std::swap(previous_, next_);
+  const SimulationSettings& settings = scene_.simulation;
+  const NewtonResult result = solver_.Solve(next_, {.maxIterations = settings.newtonIterations,
+                                                    .maxLinearIterations = settings.linearIterations,
+                                                    .tolerance = settings.tolerance});
+  counts_.newtonIterations += result.iterations;
+  counts_.linearIterations += result.linearIterations;
+  counts_.residual = std::max(counts_.residual, result.residual);
+  counts_.converged = counts_.converged && result.converged;
+  std::swap(previous_, position_);
+  std::swap(position_, next_);
+}
+
+void FabricEngine::CollideBall(Ball& ball) {
+  struct Points {
+    FabricEngine& e;
+    int count() const { return e.model_.vertexCount; }
+    bool fixed(int v) const { return !e.free_[Index(v)]; }
+    double mass(int v) const { return e.model_.mass[Index(v)]; }
+    const Vec3& at(int v) const { return e.position_[Index(v)]; }
+    void put(int v, const Vec3& x) { e.position_[Index(v)] = x; }
+  };
+  counts_.colliderContacts += PushApart(ball, h_, Points{*this}, touched_);
+}
+
+void FabricEngine::Place(const Handle& handle) {
+  const int first = model_.firstVertex[Index(handle.cloth)], end = model_.firstVertex[Index(handle.cloth) + 1];
+  const int centre = first + handle.vertex;
+  const Vec3 way = handle.target - position_[Index(centre)];
+  const auto shift = [&](int v, const Vec3& by) {
+    position_[Index(v)] += by;
+    previous_[Index(v)] += by;
+  };
+  if (const Pin* pin = pins_.Find(centre)) {
+    pins_.Shift(Index(pin - pins_.All().data()), way);
+    shift(centre, way);
+    return;
+  }
+  for (int v = first; v < end; ++v) {
+    const double share = GripShare(handle, model_.start[Index(v)] - model_.start[Index(centre)]);
+    if (share > 0 && free_[Index(v)]) shift(v, way * share);
+  }
+}
+
+EngineCounts FabricEngine::TakeCounts() {
+  return std::exchange(counts_, {});
+}
+
+void FabricEngine::ReadState(int cloth, std::span<Vec3> positions, std::span<Vec3> previous) const {
+  const auto first = static_cast<std::ptrdiff_t>(model_.firstVertex[Index(cloth)]);
+  std::copy_n(position_.begin() + first, positions.size(), positions.begin());
+  std::copy_n(previous_.begin() + first, previous.size(), previous.begin());
+}
+
+void FabricEngine::ReadAnchors(int cloth, std::vector<Vec3>& anchors) const {
+  pins_.ReadAnchors(Index(cloth), anchors);
+}
+
+void FabricEngine::WriteState(int cloth, std::span<const Vec3> positions, std::span<const Vec3> previous,
+                              std::span<const Vec3> anchors, double time) {
+  const auto first = static_cast<std::ptrdiff_t>(model_.firstVertex[Index(cloth)]);
+  std::copy(positions.begin(), positions.end(), position_.begin() + first);
+  std::copy(previous.begin(), previous.end(), previous_.begin() + first);
+  pins_.WriteAnchors(Index(cloth), anchors, [&](int v) { return position_[Index(v)]; });
+  time_ = time;
+}
+
+VertexRef FabricEngine::RefOf(int vertex) const {
+  const auto cloth = std::upper_bound(model_.firstVertex.begin(), model_.firstVertex.end(), vertex) - 1;
+  return {static_cast<int>(cloth - model_.firstVertex.begin()), vertex - *cloth};
+}
+
+Stretch FabricEngine::GreatestStretch() const {
+  double greatest = 0;  // squared
+  int at = -1;
+  for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
+    const Triangle& tri = model_.triangles[t];
+    const auto x = [&](std::int32_t v) { return From<double>(position_[Index(v)]); };
+    const DeformationGradient<double> f = Deformation(model_.rest[t], x(tri.a), x(tri.b), x(tri.c));
+    const double uu = Dot(f.u, f.u), vv = Dot(f.v, f.v), uv = Dot(f.u, f.v);
+    const double square = 0.5 * (uu + vv) + std::sqrt(0.25 * (uu - vv) * (uu - vv) + uv * uv);
+    if (square > greatest) greatest = square, at = tri.a;
+  }
+  if (at < 0) return {};
+  return {std::sqrt(greatest), RefOf(at)};
+}
+
+double FabricEngine::ElasticEnergy() {
+  return solver_.objective().ElasticEnergy(position_);
+}
+
+std::span<const double> FabricEngine::Masses(int cloth) const {
+  const int first = model_.firstVertex[Index(cloth)], end = model_.firstVertex[Index(cloth) + 1];
+  return std::span(model_.mass).subspan(Index(first), Index(end - first));
+}
+
+VertexRef FabricEngine::FindOutOfBounds() const {
+  for (int v = 0; v < model_.vertexCount; ++v) {
+    const Vec3& x = position_[Index(v)];
+    if (!(std::abs(x.x) <= kBound && std::abs(x.y) <= kBound && std::abs(x.z) <= kBound)) return RefOf(v);
+  }
+  return {};
+}
+
+}  // namespace percale::fabric

@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// The continuum engine: cloth as a sheet of measured stiffness on any triangle mesh, one step of backward Euler at a
+/// time, each the minimum of an incremental potential.
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/executor.h"
+#include "fabric/energy/air.h"
+#include "fabric/fabric_model.h"
+#include "fabric/newton.h"
+#include "mesh/engine_types.h"
+#include "mesh/pins.h"
+#include "percale/interaction.h"
+#include "percale/scene.h"
+
+namespace percale::fabric {
+
+class FabricEngine {
+ public:
+  /// `meshes`: one per cloth. The executor must outlive the engine.
+  FabricEngine(const Scene& scene, std::span<const RestMesh> meshes, const Executor& executor);
+
+  /// Takes settings for the same cloths; the state stays.
+  void Configure(const Scene& scene);
+  /// Back to the start.
+  void Reset();
+
+  // One step, in this order.
+  /// Puts pins where the scene's motions have them at `time` [s], the end of the step.
+  void MoveColliders(double time);
+  /// Where inertia alone would lead, and what air and handles do. Returns false when a coordinate is out of bounds.
+  bool ApplyForces(double time, std::span<const Gust> gusts, std::span<const Handle> handles);
+  /// Where all forces balance.
+  void Solve();
+  /// Pushes cloth and ball apart by their masses, momentum kept.
+  void CollideBall(Ball& ball);
+
+  /// Between two frames: puts a vertex at the handle's target, and the cloth around it along.
+  void Place(const Handle& handle);
+
+  /// What was done since the last call.
+  EngineCounts TakeCounts();
+
+  /// Copies a cloth's positions and those of one step ago [m]. Spans of the cloth's vertex count.
+  void ReadState(int cloth, std::span<Vec3> positions, std::span<Vec3> previous) const;
+  /// Where the pins of a cloth are held apart from their motions [m], by vertex.
+  void ReadAnchors(int cloth, std::vector<Vec3>& anchors) const;
+  /// Puts a cloth into the state that it has at `time` [s].
+  void WriteState(int cloth, std::span<const Vec3> positions, std::span<const Vec3> previous,
+                  std::span<const Vec3> anchors, double time);
+  /// The greatest stretch of a triangle: the larger singular value of its deformation gradient.
+  Stretch GreatestStretch() const;
+  double ElasticEnergy();                           ///< [J]
+  std::span<const double> Masses(int cloth) const;  ///< Of its vertices [kg].
+  /// The first vertex with a coordinate out of bounds.
+  VertexRef FindOutOfBounds() const;
+
+ private:
+  void UpdatePins();
+  void Hold(std::span<const Handle> handles);
+  void Blow(double time, std::span<const Gust> gusts);
+  VertexRef RefOf(int vertex) const;
+
+  const Executor& executor_;
+  Scene scene_;
+  FabricModel model_;
+  NewtonSolver solver_;
+  double h_ = 0;     // of a step [s]
+  double time_ = 0;  // of the last step [s]
+  Pins pins_;
+  std::vector<std::uint8_t> free_;  // per vertex
+  std::vector<Vec3> position_, previous_;
+  std::vector<Vec3> predicted_, next_;
+  std::vector<VertexLoad> loads_;
+  std::vector<WindLoad<double>> windLoads_;  // per triangle
+  std::vector<std::int32_t> touched_;        // of CollideBall
+  EngineCounts counts_;
+};
+
+}  // namespace percale::fabric

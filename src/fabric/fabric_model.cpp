@@ -1,0 +1,237 @@
+#include "fabric/fabric_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "mesh/topology.h"
+
+namespace percale::fabric {
+namespace {
+
+/// Points of the material per vertex beyond which it is no chart: pieces of a few triangles have no coarse grid.
+constexpr double kMostSeams = 1.5;
+
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Turns a cloth's material coordinates so that u runs along the warp.
+Vec2 AlongWarp(const Vec2& p, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * p.x + s * p.y, c * p.y - s * p.x};
+}
+
+MaterialPoint Corner(const FabricModel& model, std::int64_t triangle, int corner) {
+  const Vec2& p = model.material[Index(3 * triangle + corner)];
+  return {p.x, p.y};
+}
+
+/// The corner of a triangle at which `vertex` is.
+MaterialPoint CornerAt(const FabricModel& model, std::int32_t triangle, std::int32_t vertex) {
+  const Triangle& t = model.triangles[Index(triangle)];
+  return Corner(model, triangle, t.a == vertex ? 0 : t.b == vertex ? 1 : 2);
+}
+
+/// Appends a cloth's vertices and triangles.
+void Append(const RestMesh& mesh, double warpAngle, FabricModel& model) {
+  const int first = model.vertexCount;
+  model.firstVertex.push_back(first);
+  model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
+  const auto cloth = static_cast<std::int32_t>(model.firstVertex.size() - 1);
+  model.vertexCount += static_cast<int>(mesh.positions.size());
+  model.start.insert(model.start.end(), mesh.positions.begin(), mesh.positions.end());
+  for (const Triangle& t : mesh.triangles) {
+    model.triangles.push_back({t.a + first, t.b + first, t.c + first});
+    model.clothOf.push_back(cloth);
+  }
+  for (const Vec2& p : mesh.material) model.material.push_back(AlongWarp(p, warpAngle));
+}
+
+/// Hinges, and which belong to which triangle.
+void FindHinges(const Topology& topology, FabricModel& model) {
+  std::vector<std::int32_t> hingeOfEdge(topology.edges.size(), -1);
+  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    const auto& [t0, t1] = topology.edgeTriangles[e];
+    if (t0 < 0 || t1 < 0) continue;
+    hingeOfEdge[e] = static_cast<std::int32_t>(model.hinges.size());
+    FabricHinge hinge{};
+    hinge.vertex[0] = topology.edges[e].a, hinge.vertex[1] = topology.edges[e].b;
+    hinge.vertex[2] = topology.edgeOpposite[e][0], hinge.vertex[3] = topology.edgeOpposite[e][1];
+    hinge.triangle[0] = t0, hinge.triangle[1] = t1;
+    model.hinges.push_back(hinge);
+  }
+  model.hingeOf.resize(model.triangles.size());
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k)
+      model.hingeOf[t][k] = hingeOfEdge[Index(topology.sideEdges[3 * t + (k + 1) % 3])];
+  }
+}
+
+/// Lists of `entries` by what they belong to, ascending.
+Lists ListBy(int count, std::size_t entries, auto&& owner) {
+  Lists lists;
+  lists.first.assign(Index(count) + 1, 0);
+  for (std::size_t e = 0; e < entries; ++e) ++lists.first[Index(owner(e)) + 1];
+  for (std::size_t i = 0; i < Index(count); ++i) lists.first[i + 1] += lists.first[i];
+  lists.entry.resize(entries);
+  std::vector<std::int32_t> next(lists.first.begin(), lists.first.end() - 1);
+  for (std::size_t e = 0; e < entries; ++e) lists.entry[Index(next[Index(owner(e))]++)] = static_cast<std::int32_t>(e);
+  return lists;
+}
+
+/// A hinge's four vertices, unfolded into the plane: the edge along x.
+void Unfold(const FabricModel& model, FabricHinge& hinge) {
+  Vec3 at[4];
+  for (int t = 0; t < 2; ++t) {
+    const Triangle& triangle = model.triangles[Index(hinge.triangle[t])];
+    const std::int32_t corners[3] = {triangle.a, triangle.b, triangle.c};
+    int opposite = 0;
+    while (corners[opposite] != hinge.vertex[2 + t]) ++opposite;
+    const int k0 = corners[(opposite + 1) % 3] == hinge.vertex[0] ? (opposite + 1) % 3 : (opposite + 2) % 3;
+    const int k1 = 3 - opposite - k0;
+    const MaterialPoint p0 = Corner(model, hinge.triangle[t], k0), p1 = Corner(model, hinge.triangle[t], k1),
+                        p2 = Corner(model, hinge.triangle[t], opposite);
+    const double length = std::hypot(p1.u - p0.u, p1.v - p0.v);
+    const double along = ((p2.u - p0.u) * (p1.u - p0.u) + (p2.v - p0.v) * (p1.v - p0.v)) / length;
+    const double height = 2 * model.rest[Index(hinge.triangle[t])].area / length;
+    // At a seam the two sides may be cut to slightly different lengths; the first counts.
+    if (t == 0) at[1] = {length, 0, 0};
+    at[2 + t] = {along, t == 0 ? height : -height, 0};
+  }
+  const Vector3<double> x[4] = {From<double>(at[0]), From<double>(at[1]), From<double>(at[2]), From<double>(at[3])};
+  hinge.weights = MakeHingeWeights(x[0], x[1], x[2], x[3]);
+}
+
+/// Makes the corners that agree on a vertex and its place in the material one point.
+void FindChart(FabricModel& model) {
+  struct Corner {
+    std::int32_t vertex;
+    Vec2 at;
+    std::size_t corner;
+  };
+  std::vector<Corner> order;
+  for (std::size_t k = 0; k < model.material.size(); ++k) {
+    const Triangle& t = model.triangles[k / 3];
+    order.push_back({k % 3 == 0 ? t.a : k % 3 == 1 ? t.b : t.c, model.material[k], k});
+  }
+  std::sort(order.begin(), order.end(), [](const Corner& a, const Corner& b) {
+    return std::tie(a.vertex, a.at.x, a.at.y, a.corner) < std::tie(b.vertex, b.at.x, b.at.y, b.corner);
+  });
+  std::vector<std::int32_t> pointOf(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool same = k > 0 && order[k].vertex == order[k - 1].vertex && order[k].at == order[k - 1].at;
+    if (!same) model.chart.push_back(order[k].at);
+    pointOf[order[k].corner] = static_cast<std::int32_t>(model.chart.size() - 1);
+  }
+  if (static_cast<double>(model.chart.size()) > kMostSeams * model.vertexCount) {
+    model.chart.clear();
+    return;
+  }
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    model.chartTriangles.push_back({pointOf[3 * t], pointOf[3 * t + 1], pointOf[3 * t + 2]});
+  }
+}
+
+}  // namespace
+
+FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes) {
+  FabricModel model;
+  for (std::size_t c = 0; c < meshes.size(); ++c) {
+    Append(meshes[c], scene.cloths[c].warpAngle * std::numbers::pi / 180, model);
+  }
+  model.firstVertex.push_back(model.vertexCount);
+  model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const auto triangle = static_cast<std::int64_t>(t);
+    model.rest.push_back(
+        MakeRestTriangle<double>(Corner(model, triangle, 0), Corner(model, triangle, 1), Corner(model, triangle, 2)));
+  }
+  FindChart(model);
+  const Topology topology = BuildTopology(Index(model.vertexCount), model.triangles);
+  FindHinges(topology, model);
+  for (FabricHinge& hinge : model.hinges) Unfold(model, hinge);
+  model.corners = {topology.cornerBegin, topology.corners};
+  model.hingeEnds = ListBy(model.vertexCount, 4 * model.hinges.size(),
+                           [&](std::size_t e) { return model.hinges[e / 4].vertex[e % 4]; });
+  TakeMaterials(scene, model);
+  return model;
+}
+
+void TakeMaterials(const Scene& scene, FabricModel& model) {
+  model.membranes.clear();
+  model.pressure.clear();
+  model.plateStiffness.clear();
+  model.bendDamping.clear();
+  model.anyHinges = false;
+  model.plate.clear();
+  for (const ClothSettings& cloth : scene.cloths) {
+    Membrane membrane;
+    membrane.kind = cloth.membraneLaw;
+    membrane.damping = cloth.stretchDamping;
+    membrane.orthotropic = OrthotropicMembrane(cloth.stretchWarp, cloth.stretchWeft, cloth.poissonRatio, cloth.shear);
+    StVenantKirchhoff<double>& law = membrane.orthotropic;
+    const double limit = cloth.strainLimit;
+    law.limitU = law.limitV = limit + 0.5 * limit * limit;
+    // At twice the limit the yarns hold as much again as the weave.
+    law.limitStiffnessU = law.c11 / limit, law.limitStiffnessV = law.c22 / limit;
+    membrane.neoHookean = NeoHookeanMembrane(0.5 * (cloth.stretchWarp + cloth.stretchWeft), cloth.poissonRatio);
+    model.membranes.push_back(membrane);
+    model.pressure.push_back(cloth.pressure);
+    model.plateStiffness.push_back(std::sqrt(cloth.bendWarp * cloth.bendWeft));
+    model.bendDamping.push_back(cloth.bendDamping);
+    const bool plate = cloth.bendingLaw == BendingLaw::Quadratic;
+    model.anyHinges = model.anyHinges || !plate;
+    model.plate.resize(Index(model.firstVertex[model.membranes.size()]), plate ? 1 : 0);
+  }
+
+  model.mass.assign(Index(model.vertexCount), 0);
+  model.bending.assign(model.triangles.size(), {});
+  std::vector<ScalarEntry> entries;
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const Triangle& triangle = model.triangles[t];
+    const std::int32_t corners[3] = {triangle.a, triangle.b, triangle.c};
+    const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
+    for (const std::int32_t v : corners) model.mass[Index(v)] += cloth.density * model.rest[t].area / 3;
+
+    const double mixed = std::sqrt(cloth.bendWarp * cloth.bendWeft);
+    const BendingStiffness stiffness{cloth.bendWarp, cloth.poissonRatio * mixed, cloth.bendWeft,
+                                     0.5 * (1 - cloth.poissonRatio) * mixed};
+    const auto self = static_cast<std::int32_t>(t);
+    const MaterialPoint points[3] = {Corner(model, self, 0), Corner(model, self, 1), Corner(model, self, 2)};
+    MaterialPoint across[3] = {};
+    bool present[3] = {};
+    double areaAcross[3] = {};
+    HingeWeights<double> weights[3];
+    std::int32_t vertices[6] = {corners[0], corners[1], corners[2], -1, -1, -1};  // the last three lie across the edges
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t h = model.hingeOf[t][k];
+      if (h < 0) continue;
+      const FabricHinge& hinge = model.hinges[Index(h)];
+      const std::size_t side = hinge.triangle[0] == self ? 0 : 1;
+      const std::int32_t other = hinge.triangle[1 - side];
+      const std::size_t from = (k + 1) % 3, to = (k + 2) % 3;
+      present[k] = true;
+      areaAcross[k] = model.rest[Index(other)].area;
+      across[k] = UnfoldedApex(points[from], points[to], points[k], CornerAt(model, other, corners[from]),
+                               CornerAt(model, other, corners[to]), CornerAt(model, other, hinge.vertex[3 - side]));
+      vertices[3 + k] = hinge.vertex[3 - side];
+      const double* w = hinge.weights.vertex;
+      const bool alike = hinge.vertex[0] == corners[from];
+      weights[k] = {{w[alike ? 0 : 1], w[alike ? 1 : 0], w[2 + side], w[3 - side]}};
+    }
+    model.bending[t] = mixed > 0 ? MakeFittedBendingMatrix(stiffness, points, across, present)
+                                 : MakeBendingMatrix(stiffness, points, areaAcross);
+    const QuadraticBending<double> element = MakeQuadraticBending(model.bending[t], weights);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j) {
+        const double value = element.entry[i <= j ? Upper6(i, j) : Upper6(j, i)];
+        if (value != 0) entries.push_back({vertices[i], vertices[j], value});
+      }
+    }
+  }
+  model.plates = MakeScalarMatrix(model.vertexCount, entries);
+}
+
+}  // namespace percale::fabric

@@ -1,0 +1,78 @@
+#pragma once
+/// \file
+/// What the cloths of a scene are, apart from their state: all of them in one set of arrays. Geometry is built once;
+/// what depends on materials follows changes of the settings.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "fabric/energy/bending.h"
+#include "fabric/energy/membrane.h"
+#include "fabric/system_matrix.h"
+#include "percale/rest_mesh.h"
+#include "percale/scene.h"
+
+namespace percale::fabric {
+
+/// Two triangles on an edge.
+struct FabricHinge {
+  std::int32_t vertex[4];        ///< The edge's ends, then the corner opposite of it in either triangle.
+  std::int32_t triangle[2];      ///< That of vertex[2], that of vertex[3].
+  double restAngle = 0;          ///< [rad]
+  HingeWeights<double> weights;  ///< Of the vertices in the jump of slope across the edge [1/m].
+};
+
+/// The membrane of one cloth.
+struct Membrane {
+  MembraneLaw kind = MembraneLaw::StVenantKirchhoff;
+  StVenantKirchhoff<double> orthotropic;
+  StableNeoHookean<double> neoHookean;
+  double damping = 0;  ///< Time constant of strain rates [s].
+};
+
+/// For each of `count` items the list of what belongs to it: entries of item i are [first[i], first[i + 1]).
+struct Lists {
+  std::vector<std::int32_t> first, entry;
+};
+
+struct FabricModel {
+  // Geometry.
+  int vertexCount = 0;
+  std::vector<int> firstVertex;    ///< Per cloth, and the end.
+  std::vector<int> firstTriangle;  ///< Per cloth, and the end.
+  std::vector<Vec3> start;         ///< [m]
+  std::vector<Triangle> triangles;
+  std::vector<Vec2> material;              ///< Three per triangle, u along the warp [m].
+  std::vector<Triangle> chartTriangles;    ///< The same, of points of the chart.
+  std::vector<Vec2> chart;                 ///< Material points, each once per vertex [m]; none where the
+                                           ///< triangles do not lie side by side in the material.
+  std::vector<std::int32_t> clothOf;       ///< Per triangle.
+  std::vector<RestTriangle<double>> rest;  ///< Per triangle.
+  std::vector<FabricHinge> hinges;
+  std::vector<std::array<std::int32_t, 3>> hingeOf;  ///< Per triangle those opposite of its corners; -1 at a border.
+  Lists corners;                                     ///< Per vertex its corners: 3 * triangle + 0, 1, 2, ascending.
+  Lists hingeEnds;                                   ///< Per vertex its places in hinges: 4 * hinge + 0..3, ascending.
+
+  // Materials.
+  std::vector<double> mass;                    ///< Per vertex [kg].
+  std::vector<Membrane> membranes;             ///< Per cloth.
+  std::vector<double> pressure;                ///< Per cloth [Pa].
+  std::vector<double> bendDamping;             ///< Per cloth [s].
+  std::vector<BendingMatrix<double>> bending;  ///< Per triangle, for the angles of its three hinges [N m].
+  std::vector<std::uint8_t> plate;             ///< Per vertex: 1 where the cloth bends by BendingLaw::Quadratic.
+  ScalarMatrix plates;                         ///< Bending of all cloths as a quadratic of the positions [N/m].
+  std::vector<double> plateStiffness;          ///< Per cloth: geometric mean of those along warp and weft [N m].
+  bool anyHinges = false;                      ///< Whether any cloth bends by BendingLaw::Hinges.
+
+  int Cloths() const { return static_cast<int>(firstVertex.size()) - 1; }
+};
+
+/// `meshes`: one per cloth of the scene.
+FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes);
+
+/// Takes the materials of the scene, which must have the same cloths.
+void TakeMaterials(const Scene& scene, FabricModel& model);
+
+}  // namespace percale::fabric

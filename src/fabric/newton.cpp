@@ -1,0 +1,111 @@
+#include "fabric/newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace percale::fabric {
+namespace {
+
+/// A step must gain this share of what the slope promises (Nocedal, Wright 2006, "Numerical Optimization", eq. 3.4).
+constexpr double kSufficient = 1e-4;
+constexpr int kMostHalvings = 12;
+/// Corrections shorter than this are rounding: there is nothing left to do [m, root mean square].
+constexpr double kNoMove = 1e-9;
+/// What r'z falls to in a linear system: a Newton step of little curvature is worth no more.
+constexpr double kLinearTolerance = 0.01;
+
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Bending, and masses over h^2 on the diagonal.
+ScalarMatrix ConstantPart(const FabricModel& model, double h) {
+  ScalarMatrix constant = model.plates;
+  // Every vertex of a triangle has an entry on the diagonal only where it bends.
+  std::vector<ScalarEntry> entries;
+  for (int row = 0; row < model.vertexCount; ++row) {
+    for (std::int32_t k = constant.first[Index(row)]; k < constant.first[Index(row) + 1]; ++k) {
+      entries.push_back({row, constant.column[Index(k)], constant.value[Index(k)]});
+    }
+    entries.push_back({row, row, model.mass[Index(row)] / (h * h)});
+  }
+  return MakeScalarMatrix(model.vertexCount, entries);
+}
+
+}  // namespace
+
+NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
+    : model_(model),
+      executor_(executor),
+      pattern_(MakePattern(model.vertexCount, model.triangles)),
+      objective_(model, pattern_, executor) {
+  gradient_.resize(Index(model.vertexCount));
+  trial_.resize(Index(model.vertexCount));
+  right_.assign(VectorLength(model.vertexCount), 0);
+  direction_.assign(VectorLength(model.vertexCount), 0);
+}
+
+void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
+  std::vector<std::uint8_t> pinned(free.size());
+  for (std::size_t v = 0; v < free.size(); ++v) pinned[v] = free[v] ? 0 : 1;
+  matrix_.SetUp(pattern_, ConstantPart(model_, h), pinned);
+  const MaterialMesh material{model_.triangles, model_.chartTriangles, model_.chart};
+  multigrid_.SetUp(matrix_, MakeHierarchy(pattern_, material, pinned));
+  conjugateGradient_.SetUp(model_.vertexCount);
+}
+
+NewtonResult NewtonSolver::Solve(std::span<Vec3> y, const NewtonSettings& settings) {
+  NewtonResult result;
+  double energy = objective_.Energy(y), first = 0;
+  while (result.iterations < settings.maxIterations) {
+    objective_.GradientAndTangent(y, gradient_, matrix_);
+    if (result.iterations == 0) multigrid_.Refill(matrix_, executor_);
+    for (int v = 0; v < model_.vertexCount; ++v) {
+      Real* r = &right_[3 * Index(v)];
+      const Vec3& g = gradient_[Index(v)];
+      r[0] = static_cast<Real>(-g.x), r[1] = static_cast<Real>(-g.y), r[2] = static_cast<Real>(-g.z);
+    }
+    const SolveResult linear = conjugateGradient_.Solve(
+        matrix_, multigrid_, right_.data(), direction_.data(),
+        {.maxIterations = settings.maxLinearIterations, .tolerance = kLinearTolerance}, executor_);
+    result.linearIterations += linear.iterations;
+    double slope = 0, square = 0;
+    for (int v = 0; v < model_.vertexCount; ++v) {
+      const Real* d = &direction_[3 * Index(v)];
+      const Vec3 way{d[0], d[1], d[2]};
+      slope += Dot(gradient_[Index(v)], way);
+      square += Dot(way, way);
+    }
+    if (!(slope < 0)) break;
+    const double alpha = SearchLine(y, energy, slope);
+    if (alpha == 0) break;
+    std::copy(trial_.begin(), trial_.end(), y.begin());
+    energy = trialEnergy_;
+    ++result.iterations;
+    const double length = alpha * std::sqrt(square / model_.vertexCount);
+    if (result.iterations == 1) first = length;
+    result.residual = first > 0 ? length / first : 0;
+    if (length < kNoMove) result.residual = 0;
+    if (result.iterations > 1 || length < kNoMove) {
+      if (result.residual <= settings.tolerance) break;
+    }
+  }
+  result.converged = result.residual <= settings.tolerance;
+  return result;
+}
+
+/// Halves the step from 1 on until it gains enough; leaves where it leads in trial_. Returns 0 where nothing gains.
+double NewtonSolver::SearchLine(std::span<const Vec3> y, double energy, double slope) {
+  double alpha = 1;
+  for (int halving = 0; halving <= kMostHalvings; ++halving, alpha /= 2) {
+    for (int v = 0; v < model_.vertexCount; ++v) {
+      const Real* d = &direction_[3 * Index(v)];
+      trial_[Index(v)] = y[Index(v)] + Vec3{d[0], d[1], d[2]} * alpha;
+    }
+    trialEnergy_ = objective_.Energy(trial_);
+    if (trialEnergy_ <= energy + kSufficient * alpha * slope) return alpha;
+  }
+  return 0;
+}
+
+}  // namespace percale::fabric

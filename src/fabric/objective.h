@@ -1,0 +1,80 @@
+#pragma once
+/// \file
+/// The incremental potential of one step of backward Euler: its minimum is where the cloth is at the end of the step
+/// (Martin et al. 2011, "Example-based elastic materials", section 4; Kane et al. 2000).
+///
+///     E(y) = |y - x~|²_M / 2h² + membrane + bending + pressure + loads,   x~ = x + h v + h² g
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/executor.h"
+#include "fabric/fabric_model.h"
+#include "fabric/system_matrix.h"
+#include "percale/vec3.h"
+
+namespace percale::fabric {
+
+/// What pulls at a vertex beside gravity over one step, quadratic in its way w = y - x: energy ½ wᵀ B w - f·w [J].
+struct VertexLoad {
+  Matrix3<double> stiffness;  ///< B, symmetric and without negative eigenvalues [N/m].
+  Vec3 force;                 ///< f [N].
+};
+
+/// The settings of one step.
+struct StepSettings {
+  double h = 0;                        ///< Length [s].
+  std::span<const Vec3> start;         ///< x, where the step begins [m].
+  std::span<const Vec3> predicted;     ///< x~, where inertia and gravity alone would lead [m].
+  std::span<const VertexLoad> loads;   ///< Per vertex.
+  std::span<const std::uint8_t> free;  ///< Per vertex: 0 for pins, whose gradient is zero.
+};
+
+class Objective {
+ public:
+  /// Both must outlive it. `pattern`: of the matrix to be filled, with the blocks of all triangles.
+  Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor);
+
+  /// Takes over the settings of a step; their spans must stay.
+  void Begin(const StepSettings& step);
+
+  /// E(y) [J].
+  double Energy(std::span<const Vec3> y);
+  /// Its derivative [N]; zero at pins.
+  void Gradient(std::span<const Vec3> y, std::span<Vec3> gradient);
+  /// The same, and the blocks of a second derivative with eigenvalues bounded from below as solver.md says.
+  void GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix);
+
+  /// Of membrane and bending alone [J].
+  double ElasticEnergy(std::span<const Vec3> y);
+
+ private:
+  double MembraneEnergy(std::span<const Vec3> y);
+  double BendingEnergy(std::span<const Vec3> y);
+  MembraneDamping<double> Damping(int triangle) const;
+  double CompressionFloor(int triangle) const;
+  BendingMoments<double> Bend(int triangle) const;
+  Vec3 PlateForce(std::span<const Vec3> y, int vertex) const;
+  template <bool withTangent>
+  void EvaluateTriangles(std::span<const Vec3> y);
+  void EvaluateHinges(std::span<const Vec3> y, bool withGradient);
+  void Gather(std::span<const Vec3> y, std::span<Vec3> gradient);
+  template <class Body>
+  double Sum(int count, Body&& body);
+
+  const FabricModel& model_;
+  const Executor& executor_;
+  StepSettings step_;
+  std::vector<std::array<std::int32_t, 9>> blocks_;  // per triangle: where its Hessian goes
+  // Per triangle:
+  std::vector<MembraneStrain<double>> startStrain_;
+  std::vector<TriangleGradient<double>> triangleGradient_;
+  std::vector<TriangleHessian<double>> triangleHessian_;
+  // Per hinge:
+  std::vector<double> startAngle_, angle_, moment_;
+  std::vector<Hinge<double>> hinge_;
+  std::vector<double> chunkSums_;
+};
+
+}  // namespace percale::fabric

@@ -1,0 +1,97 @@
+#include "fabric/objective.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "fabric/system_matrix.h"
+#include "math/splitmix64.h"
+#include "mesh/rest_mesh.h"
+#include "percale/fabrics.h"
+
+using namespace percale;
+using namespace percale::fabric;
+
+namespace {
+
+/// A small sheet with all terms, in a state far from rest.
+struct Sheet {
+  explicit Sheet(BendingLaw bending, MembraneLaw membrane = MembraneLaw::StVenantKirchhoff) {
+    scene.simulation.engine = Engine::Fabric;
+    ClothSettings& cloth = scene.cloths.emplace_back();
+    SetFabric(cloth, Fabric::Silk);
+    cloth.numWidthPoints = 5, cloth.numHeightPoints = 4;
+    cloth.width = 0.2, cloth.height = 0.15;
+    cloth.bendWarp = 0.02, cloth.bendWeft = 0.01;  // enough to matter beside the membrane
+    cloth.warpAngle = 20;
+    cloth.pressure = 50;
+    cloth.bendingLaw = bending;
+    cloth.membraneLaw = membrane;
+    cloth.stretchDamping = cloth.bendDamping = 0.01;
+    const std::vector<RestMesh> meshes = {MakeGridMesh(cloth)};
+    model = BuildModel(scene, meshes);
+    const auto count = static_cast<std::size_t>(model.vertexCount);
+    const auto noise = [&] { return Vec3{random.NextUnit() - 0.5, random.NextUnit() - 0.5, random.NextUnit() - 0.5}; };
+    for (const Vec3& x : model.start) {
+      y.push_back(x + noise() * 0.02);
+      start.push_back(x + noise() * 0.02);
+      predicted.push_back(x + noise() * 0.02);
+      VertexLoad load;
+      load.stiffness = Diagonal(1.0 + random.NextUnit());
+      load.force = noise();
+      loads.push_back(load);
+    }
+    free.assign(count, 1);
+    free[3] = free[7] = 0;
+    pattern = MakePattern(model.vertexCount, model.triangles);
+    matrix.SetUp(pattern, model.plates);
+  }
+
+  SplitMix64 random{7};
+  Scene scene;
+  FabricModel model;
+  std::vector<Vec3> y, start, predicted;
+  std::vector<VertexLoad> loads;
+  std::vector<std::uint8_t> free;
+  Executor executor{1};
+  BlockPattern pattern;
+  SystemMatrix matrix;
+};
+
+double& Component(Vec3& v, int axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+}  // namespace
+
+TEST_CASE("the gradient is the derivative of the energy, term by term and all together") {
+  for (const BendingLaw bending : {BendingLaw::Quadratic, BendingLaw::Hinges}) {
+    for (const MembraneLaw membrane : {MembraneLaw::StVenantKirchhoff, MembraneLaw::NeoHookean}) {
+      Sheet s(bending, membrane);
+      Objective objective(s.model, s.pattern, s.executor);
+      objective.Begin({1.0 / 60, s.start, s.predicted, s.loads, s.free});
+      std::vector<Vec3> gradient(s.y.size()), again(s.y.size());
+      objective.Gradient(s.y, gradient);
+      objective.GradientAndTangent(s.y, again, s.matrix);
+      for (std::size_t v = 0; v < s.y.size(); ++v) {
+        CHECK(gradient[v] == again[v]);
+        for (int axis = 0; axis < 3; ++axis) {
+          if (!s.free[v]) {
+            CHECK(Component(gradient[v], axis) == 0);
+            continue;
+          }
+          constexpr double kStep = 1e-6;
+          double& x = Component(s.y[v], axis);
+          const double at = x;
+          x = at + kStep;
+          const double above = objective.Energy(s.y);
+          x = at - kStep;
+          const double below = objective.Energy(s.y);
+          x = at;
+          CHECK(Component(gradient[v], axis) == doctest::Approx((above - below) / (2 * kStep)).epsilon(1e-5));
+        }
+      }
+    }
+  }
+}
