@@ -1,0 +1,202 @@
+#include "fabric/newton.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fabric/reference_solver.h"
+#include "math/splitmix64.h"
+#include "mesh/rest_mesh.h"
+#include "percale/fabrics.h"
+#include "percale/world.h"
+
+using namespace percale;
+using namespace percale::fabric;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+
+/// A square metre of cloth that hangs by two corners.
+Scene HangingSheet(Fabric fabric, int side, BendingLaw bending = BendingLaw::Quadratic) {
+  Scene scene;
+  scene.simulation.engine = Engine::Fabric;
+  scene.simulation.framesPerSecond = 60;
+  scene.simulation.stepsPerFrame = 1;
+  ClothSettings& cloth = scene.cloths.emplace_back();
+  SetFabric(cloth, fabric);
+  cloth.numWidthPoints = cloth.numHeightPoints = side;
+  cloth.bendingLaw = bending;
+  cloth.pinned = {{0, 0}, {side - 1, 0}};
+  return scene;
+}
+
+/// The steps of a scene one by one, with both solvers at hand.
+struct Stepper {
+  explicit Stepper(const Scene& scene)
+      : model(BuildModel(scene, std::vector<RestMesh>{MakeGridMesh(scene.cloths[0])})),
+        fast(model, executor),
+        reference(model),
+        position(model.start),
+        previous(model.start) {
+    const auto count = static_cast<std::size_t>(model.vertexCount);
+    free.assign(count, 1);
+    for (const GridPoint& pin : scene.cloths[0].pinned) {
+      free[static_cast<std::size_t>(pin.j * scene.cloths[0].numWidthPoints + pin.i)] = 0;
+    }
+    loads.resize(count);
+    fast.SetUp(kStep, free);
+  }
+
+  /// Begins the next step; returns where inertia alone would lead.
+  std::vector<Vec3> Begin() {
+    std::vector<Vec3> ahead(position.size());
+    predicted.resize(position.size());
+    for (std::size_t v = 0; v < position.size(); ++v) {
+      ahead[v] = free[v] ? position[v] * 2 - previous[v] : position[v];
+      predicted[v] = free[v] ? ahead[v] + Vec3{0, -9.8, 0} * (kStep * kStep) : position[v];
+    }
+    settings = {kStep, position, predicted, loads, free};
+    fast.objective().Begin(settings);
+    reference.Begin(settings);
+    return ahead;
+  }
+  void Accept(const std::vector<Vec3>& y) {
+    previous = position;
+    position = y;
+  }
+  /// Root mean square, by mass, of how far a is from b [m].
+  double Distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) const {
+    double sum = 0, mass = 0;
+    for (std::size_t v = 0; v < a.size(); ++v) {
+      sum += model.mass[v] * Dot(a[v] - b[v], a[v] - b[v]);
+      mass += model.mass[v];
+    }
+    return std::sqrt(sum / mass);
+  }
+
+  Executor executor{1};
+  FabricModel model;
+  NewtonSolver fast;
+  ReferenceSolver reference;
+  StepSettings settings;
+  std::vector<Vec3> position, previous, predicted;
+  std::vector<VertexLoad> loads;
+  std::vector<std::uint8_t> free;
+};
+
+}  // namespace
+
+TEST_CASE("the fast solver and the reference have the same energy and the same gradient") {
+  for (const BendingLaw bending : {BendingLaw::Quadratic, BendingLaw::Hinges}) {
+    Stepper s(HangingSheet(Fabric::Denim, 7, bending));
+    s.Begin();
+    SplitMix64 random(3);
+    std::vector<Vec3> y = s.position, fast(y.size()), reference(y.size());
+    for (Vec3& x : y) x += Vec3{random.NextUnit(), random.NextUnit(), random.NextUnit()} * 0.05;
+    CHECK(s.fast.objective().Energy(y) == doctest::Approx(s.reference.Energy(y)).epsilon(1e-10));
+    s.fast.objective().Gradient(y, fast);
+    s.reference.Gradient(y, reference);
+    double scale = 0;
+    for (const Vec3& g : reference) scale = std::max(scale, Length(g));
+    for (std::size_t v = 0; v < y.size(); ++v) CHECK(Length(fast[v] - reference[v]) < 1e-9 * scale);
+  }
+}
+
+TEST_CASE("with enough iterations the fast solver ends where the reference does") {
+  for (const Fabric fabric : {Fabric::Cotton, Fabric::Leather, Fabric::WoolLycra}) {
+    for (const BendingLaw bending : {BendingLaw::Quadratic, BendingLaw::Hinges}) {
+      CAPTURE(static_cast<int>(fabric));
+      Stepper s(HangingSheet(fabric, 15, bending));
+      for (int step = 0; step < 40; ++step) {
+        std::vector<Vec3> y = s.Begin(), exact = y;
+        const double start = s.Distance(y, s.position);
+        const NewtonResult result =
+            s.fast.Solve(y, {.maxIterations = 60, .maxLinearIterations = 60, .tolerance = 1e-4});
+        REQUIRE(result.converged);
+        if (step % 8 == 7) {
+          REQUIRE(s.reference.Solve(exact).converged);
+          CHECK(s.Distance(y, exact) < 2e-3 * start + 1e-9);
+          CHECK(s.reference.Energy(y) <= s.reference.Energy(exact) + 1e-6 * std::abs(s.reference.Energy(exact)));
+        }
+        s.Accept(y);
+      }
+    }
+  }
+}
+
+TEST_CASE("each iteration lowers the energy: more of them never end higher") {
+  Stepper s(HangingSheet(Fabric::Cotton, 25));
+  for (int step = 0; step < 50; ++step) {
+    const std::vector<Vec3> ahead = s.Begin();
+    double last = s.reference.Energy(ahead);
+    std::vector<Vec3> y;
+    if (step % 10 == 9) {
+      for (int iterations = 1; iterations <= 12; ++iterations) {
+        y = ahead;
+        s.fast.Solve(y, {.maxIterations = iterations, .maxLinearIterations = 8, .tolerance = 1e-12});
+        const double energy = s.reference.Energy(y);
+        CHECK(energy <= last + 1e-9 * std::abs(last));
+        last = energy;
+      }
+    }
+    y = ahead;
+    s.fast.Solve(y, {});
+    s.Accept(y);
+  }
+}
+
+TEST_CASE("cloth does not become rubber: few iterations stretch a hanging sheet no more than a converged run") {
+  double stretch[3];
+  const int newton[3] = {2, 4, 40}, linear[3] = {4, 8, 80};
+  for (int run = 0; run < 3; ++run) {
+    Scene scene = HangingSheet(Fabric::Cotton, 33);
+    scene.simulation.newtonIterations = newton[run];
+    scene.simulation.linearIterations = linear[run];
+    scene.simulation.tolerance = 1e-6;
+    World world(scene, {.threads = 1});
+    for (int frame = 0; frame < 180; ++frame) world.Step();
+    stretch[run] = world.report().greatestStretch;
+  }
+  CHECK(stretch[1] == doctest::Approx(stretch[2]).epsilon(0.01));
+  CHECK(stretch[0] == doctest::Approx(stretch[2]).epsilon(0.05));
+}
+
+TEST_CASE("the same bits for any number of threads") {
+  std::uint64_t hashes[4];
+  const int threads[4] = {1, 2, 3, 8};
+  for (int run = 0; run < 4; ++run) {
+    Scene scene = HangingSheet(Fabric::Silk, 40);
+    scene.cloths[0].bendingLaw = BendingLaw::Hinges;
+    scene.wind.velocity = {3, 0, 4};
+    World world(scene, {.threads = threads[run]});
+    for (int frame = 0; frame < 10; ++frame) world.Step();
+    hashes[run] = world.StateHash();
+  }
+  for (const std::uint64_t hash : hashes) CHECK(hash == hashes[0]);
+}
+
+TEST_CASE("a step that may not do enough says so") {
+  Scene scene = HangingSheet(Fabric::Leather, 30);
+  scene.simulation.newtonIterations = 1;
+  scene.simulation.linearIterations = 1;
+  World world(scene, {.threads = 1});
+  for (int frame = 0; frame < 30; ++frame) world.Step();
+  CHECK_FALSE(world.report().converged);
+  CHECK(world.report().residual > scene.simulation.tolerance);
+}
+
+TEST_CASE("a state goes on to the same bits after it was saved and restored") {
+  Scene scene = HangingSheet(Fabric::Wool, 20);
+  World world(scene, {.threads = 1});
+  for (int frame = 0; frame < 20; ++frame) world.Step();
+  WorldState state;
+  world.Save(state);
+  for (int frame = 0; frame < 10; ++frame) world.Step();
+  const std::uint64_t once = world.StateHash();
+  world.Restore(state);
+  for (int frame = 0; frame < 10; ++frame) world.Step();
+  CHECK(world.StateHash() == once);
+}
