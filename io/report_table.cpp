@@ -7,7 +7,8 @@ namespace percale {
 std::string ReportTableHeader() {
   std::string line =
       "frame,time_s,kinetic_energy_J,potential_energy_J,elastic_energy_J,greatest_stretch,stretch_p99,"
-      "greatest_move_m,self_contacts,collider_contacts,limited_springs";
+      "greatest_move_m,self_contacts,collider_contacts,limited_springs,"
+      "newton_iterations,linear_iterations,residual,converged";
   for (int stage = 0; stage < kStageCount; ++stage) line += "," + std::string(StageName(Stage(stage))) + "_s";
   return line + "\n";
 }
@@ -22,6 +23,9 @@ std::string ReportTableRow(const StepReport& report, std::optional<double> stret
   add(report.greatestMove);
   for (const std::int64_t count : {report.selfContacts, report.colliderContacts, report.limitedSprings})
     line += "," + std::to_string(count);
+  line += "," + std::to_string(report.newtonIterations) + "," + std::to_string(report.linearIterations);
+  add(report.residual);
+  line += report.converged ? ",1" : ",0";
   for (const double seconds : report.stageSeconds) add(seconds);
   return line + "\n";
 }

@@ -471,8 +471,9 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   CLI::App& bench = verb(Verb::Bench, "Measures speed against the textbook program",
                          "  percale bench springs\n"
                          "  percale bench springs --sizes 50 --threads 2\n"
-                         "  percale bench springs --json > speed.json\n");
-  bench.add_option("NAME", builder.options().benchmark, "Which: springs (default)");
+                         "  percale bench springs --json > speed.json\n"
+                         "  percale bench fabric --sizes 32\n");
+  bench.add_option("NAME", builder.options().benchmark, "Which: springs (default), fabric");
   bench.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR");
   builder.Call(
       bench, "--threads", "Threads of the many-threaded runs; default: as many as there are cores", "N", "Options",

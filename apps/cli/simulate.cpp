@@ -166,6 +166,11 @@ void PrintSummary(std::FILE* out, const World& world, const RunTotals& totals, R
   std::fprintf(out, "greatest stretch  %.6f, %.6f over the run\n", report.greatestStretch, totals.greatestStretch);
   std::fprintf(out, "kinetic energy    %.6g J\n", report.kineticEnergy);
   std::fprintf(out, "greatest move     %.6g m in the last frame\n", report.greatestMove);
+  if (report.newtonIterations > 0) {
+    std::fprintf(out, "solver            %s, residual %.2e; %d Newton, %d linear iterations in the last frame\n",
+                 report.converged ? "converged" : "stopped short", report.residual, report.newtonIterations,
+                 report.linearIterations);
+  }
   std::fprintf(out, "at rest           %s\n", report.atRest ? "yes" : "no");
   std::fprintf(out, "contacts          %lld in the cloth, %lld with colliders\n",
                static_cast<long long>(totals.selfContacts), static_cast<long long>(totals.colliderContacts));

@@ -194,7 +194,7 @@ std::vector<PaletteCommand> ListCommands(Session& session, const UiState& state)
   for (const Parameter& parameter : Parameters()) {
     // The camera is placed by the mouse, and the shader has entries of its own.
     if (parameter.group == "camera" || (parameter.group == "look" && parameter.name == "shader")) continue;
-    if (FindGroup(parameter.group)->count(session.scene()) == 0) continue;
+    if (FindGroup(parameter.group)->count(session.scene()) == 0 || !IsHeeded(parameter, session.scene())) continue;
     PaletteCommand command{.kind = Kind::Parameter};
     command.name = std::string(parameter.group) + "." + std::string(parameter.name);
     command.title = command.name;

@@ -15,15 +15,22 @@ namespace {
 
 constexpr float kColumnWidth = 384;  // [screen unit at scale 1]
 
+bool HasSprings(const Session& session) {
+  return session.scene().simulation.engine == Engine::Springs;
+}
+bool HasFabric(const Session& session) {
+  return session.scene().simulation.engine == Engine::Fabric;
+}
 bool HasColliders(const Session& session) {
   return !session.scene().spheres.empty() || !session.scene().planes.empty();
 }
 
 constexpr Panel kPanels[] = {
-    {"Spring types", true, DrawSpringsPanel},
+    {"Spring types", true, DrawSpringsPanel, HasSprings},
     {"Parameters", true, DrawParametersPanel},
+    {"Fabric", true, DrawFabricPanel, HasFabric},
     {"Simulation", true, DrawSimulationPanel},
-    {"Damping", true, DrawDampingPanel},
+    {"Damping", true, DrawDampingPanel, HasSprings},
     {"Gravity", true, DrawGravityPanel},
     {"Appearance", true, DrawAppearancePanel},
     {"Scenes", false, DrawScenesPanel},

@@ -31,7 +31,7 @@ struct Panel {
 /// From top to bottom: the course's in its order, then Percale's own.
 std::span<const Panel> Panels();
 
-PanelContent DrawSpringsPanel, DrawParametersPanel, DrawSimulationPanel, DrawDampingPanel, DrawGravityPanel,
+PanelContent DrawSpringsPanel, DrawParametersPanel, DrawFabricPanel, DrawSimulationPanel, DrawDampingPanel, DrawGravityPanel,
     DrawAppearancePanel, DrawScenesPanel, DrawPresetsPanel, DrawCollisionsPanel, DrawCollidersPanel, DrawWindPanel,
     DrawOverlaysPanel, DrawStatisticsPanel;
 

@@ -11,8 +11,10 @@ void DrawSimulationPanel(Session& session, UiState& state) {
   ActionButton(session, state, "step");
   ImGui::SameLine();
   ActionButton(session, state, "reset");
-  ParameterRow(session, state, "simulation", "frames_per_second");
-  ParameterRow(session, state, "simulation", "steps_per_frame");
+  for (const char* name :
+       {"engine", "frames_per_second", "steps_per_frame", "newton_iterations", "linear_iterations", "tolerance"}) {
+    ParameterRow(session, state, "simulation", name);
+  }
 }
 
 }  // namespace percale::viewer

@@ -39,6 +39,11 @@ void DrawStatisticsPanel(Session& session, UiState& state) {
     FactRow(state, "Greatest stretch", Text("%.4f", report.greatestStretch));
     FactRow(state, "Kinetic energy", Text("%.4g J", report.kineticEnergy));
     FactRow(state, "At rest", report.atRest ? "yes" : Text("no, moves %.3g mm per frame", report.greatestMove * 1000));
+    if (report.newtonIterations > 0) {
+      FactRow(state, "Solver",
+              Text("%s, residual %.1e; %d Newton, %d linear", report.converged ? "converged" : "stopped",
+                   report.residual, report.newtonIterations, report.linearIterations));
+    }
     FactRow(state, "Contacts",
             Text("%lld cloth, %lld colliders", static_cast<long long>(report.selfContacts),
                  static_cast<long long>(report.colliderContacts)));

@@ -393,6 +393,7 @@ void NoteWindow(const Session& session, UiState& state, std::string_view name) {
 }
 
 void ParameterRow(Session& session, UiState& state, std::string_view group, std::string_view name, int index) {
+  if (!IsHeeded(*FindParameter(group, name), session.scene())) return;
   const Target target = MakeTarget(session, group, name, index);
   MarkJump(state, group, name);
   switch (target.parameter.kind) {

@@ -4,10 +4,10 @@
 namespace percale::viewer {
 
 void DrawWindPanel(Session& session, UiState& state) {
-  ParameterRow(session, state, "wind", "velocity");
-  ParameterRow(session, state, "wind", "drag");
-  ParameterRow(session, state, "wind", "gustiness");
-  ParameterRow(session, state, "wind", "gust_period");
+  for (const char* name :
+       {"velocity", "drag", "gustiness", "gust_period", "air_density", "drag_coefficient", "lift_coefficient"}) {
+    ParameterRow(session, state, "wind", name);
+  }
 }
 
 }  // namespace percale::viewer

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "mesh/topology.h"
 
@@ -104,6 +105,69 @@ void Unfold(const FabricModel& model, FabricHinge& hinge) {
   hinge.weights = MakeHingeWeights(x[0], x[1], x[2], x[3]);
 }
 
+/// A triangle's bending as a quadratic of the positions of its corners and of the vertices across its edges.
+struct Plate {
+  std::int32_t vertex[6];  // -1: none
+  QuadraticBending<double> element;
+};
+Plate PlateOf(const FabricModel& model, std::int32_t triangle) {
+  const Triangle& tri = model.triangles[Index(triangle)];
+  Plate plate{{tri.a, tri.b, tri.c, -1, -1, -1}, {}};
+  HingeWeights<double> weights[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int32_t h = model.hingeOf[Index(triangle)][k];
+    if (h < 0) continue;
+    const FabricHinge& hinge = model.hinges[Index(h)];
+    const std::size_t side = hinge.triangle[0] == triangle ? 0 : 1;
+    const double* w = hinge.weights.vertex;
+    const bool alike = hinge.vertex[0] == plate.vertex[(k + 1) % 3];
+    plate.vertex[3 + k] = hinge.vertex[3 - side];
+    weights[k] = {{w[alike ? 0 : 1], w[alike ? 1 : 0], w[2 + side], w[3 - side]}};
+  }
+  plate.element = MakeQuadraticBending(model.bending[Index(triangle)], weights);
+  return plate;
+}
+
+/// Adds up the plates row by row: what touches a vertex are its own triangles, and those across an edge from it.
+void AssemblePlates(FabricModel& model) {
+  model.plates = {};
+  model.plates.first.push_back(0);
+  std::vector<std::int32_t> triangles;
+  std::vector<std::pair<std::int32_t, double>> row;
+  for (int v = 0; v < model.vertexCount; ++v) {
+    triangles.clear();
+    row.assign(1, {v, 0.0});  // also where nothing bends
+    for (std::int32_t e = model.corners.first[Index(v)]; e < model.corners.first[Index(v) + 1]; ++e) {
+      triangles.push_back(model.corners.entry[Index(e)] / 3);
+    }
+    for (std::int32_t e = model.hingeEnds.first[Index(v)]; e < model.hingeEnds.first[Index(v) + 1]; ++e) {
+      const std::int32_t end = model.hingeEnds.entry[Index(e)];
+      if (end % 4 >= 2) triangles.push_back(model.hinges[Index(end / 4)].triangle[3 - end % 4]);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    for (const std::int32_t t : triangles) {
+      const Plate plate = PlateOf(model, t);
+      for (int i = 0; i < 6; ++i) {
+        for (int j = 0; j < 6 && plate.vertex[i] == v; ++j) {
+          if (plate.vertex[j] < 0) continue;
+          row.emplace_back(plate.vertex[j], plate.element.entry[i <= j ? Upper6(i, j) : Upper6(j, i)]);
+        }
+      }
+    }
+    std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      if (k > 0 && row[k].first == row[k - 1].first) {
+        model.plates.value.back() += row[k].second;
+      } else {
+        model.plates.column.push_back(row[k].first);
+        model.plates.value.push_back(row[k].second);
+      }
+    }
+    model.plates.first.push_back(static_cast<std::int32_t>(model.plates.column.size()));
+  }
+}
+
 /// Makes the corners that agree on a vertex and its place in the material one point.
 void FindChart(FabricModel& model) {
   struct Corner {
@@ -188,7 +252,6 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
 
   model.mass.assign(Index(model.vertexCount), 0);
   model.bending.assign(model.triangles.size(), {});
-  std::vector<ScalarEntry> entries;
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& triangle = model.triangles[t];
     const std::int32_t corners[3] = {triangle.a, triangle.b, triangle.c};
@@ -203,8 +266,6 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     MaterialPoint across[3] = {};
     bool present[3] = {};
     double areaAcross[3] = {};
-    HingeWeights<double> weights[3];
-    std::int32_t vertices[6] = {corners[0], corners[1], corners[2], -1, -1, -1};  // the last three lie across the edges
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t h = model.hingeOf[t][k];
       if (h < 0) continue;
@@ -216,22 +277,11 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
       areaAcross[k] = model.rest[Index(other)].area;
       across[k] = UnfoldedApex(points[from], points[to], points[k], CornerAt(model, other, corners[from]),
                                CornerAt(model, other, corners[to]), CornerAt(model, other, hinge.vertex[3 - side]));
-      vertices[3 + k] = hinge.vertex[3 - side];
-      const double* w = hinge.weights.vertex;
-      const bool alike = hinge.vertex[0] == corners[from];
-      weights[k] = {{w[alike ? 0 : 1], w[alike ? 1 : 0], w[2 + side], w[3 - side]}};
     }
     model.bending[t] = mixed > 0 ? MakeFittedBendingMatrix(stiffness, points, across, present)
                                  : MakeBendingMatrix(stiffness, points, areaAcross);
-    const QuadraticBending<double> element = MakeQuadraticBending(model.bending[t], weights);
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j) {
-        const double value = element.entry[i <= j ? Upper6(i, j) : Upper6(j, i)];
-        if (value != 0) entries.push_back({vertices[i], vertices[j], value});
-      }
-    }
   }
-  model.plates = MakeScalarMatrix(model.vertexCount, entries);
+  AssemblePlates(model);
 }
 
 }  // namespace percale::fabric

@@ -62,7 +62,8 @@ struct FabricModel {
   std::vector<double> bendDamping;             ///< Per cloth [s].
   std::vector<BendingMatrix<double>> bending;  ///< Per triangle, for the angles of its three hinges [N m].
   std::vector<std::uint8_t> plate;             ///< Per vertex: 1 where the cloth bends by BendingLaw::Quadratic.
-  ScalarMatrix plates;                         ///< Bending of all cloths as a quadratic of the positions [N/m].
+  ScalarMatrix plates;                         ///< Bending of all cloths as a quadratic of the positions, each row
+                                               ///< with an entry on the diagonal [N/m].
   std::vector<double> plateStiffness;          ///< Per cloth: geometric mean of those along warp and weft [N m].
   bool anyHinges = false;                      ///< Whether any cloth bends by BendingLaw::Hinges.
 

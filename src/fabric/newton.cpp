@@ -21,15 +21,13 @@ std::size_t Index(std::int64_t i) {
 /// Bending, and masses over h^2 on the diagonal.
 ScalarMatrix ConstantPart(const FabricModel& model, double h) {
   ScalarMatrix constant = model.plates;
-  // Every vertex of a triangle has an entry on the diagonal only where it bends.
-  std::vector<ScalarEntry> entries;
   for (int row = 0; row < model.vertexCount; ++row) {
-    for (std::int32_t k = constant.first[Index(row)]; k < constant.first[Index(row) + 1]; ++k) {
-      entries.push_back({row, constant.column[Index(k)], constant.value[Index(k)]});
-    }
-    entries.push_back({row, row, model.mass[Index(row)] / (h * h)});
+    const auto begin = constant.column.begin() + constant.first[Index(row)];
+    const auto end = constant.column.begin() + constant.first[Index(row) + 1];
+    const auto diagonal = std::lower_bound(begin, end, row) - constant.column.begin();
+    constant.value[Index(diagonal)] += model.mass[Index(row)] / (h * h);
   }
-  return MakeScalarMatrix(model.vertexCount, entries);
+  return constant;
 }
 
 }  // namespace
