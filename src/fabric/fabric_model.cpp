@@ -70,18 +70,6 @@ void FindHinges(const Topology& topology, FabricModel& model) {
   }
 }
 
-/// Lists of `entries` by what they belong to, ascending.
-Lists ListBy(int count, std::size_t entries, auto&& owner) {
-  Lists lists;
-  lists.first.assign(Index(count) + 1, 0);
-  for (std::size_t e = 0; e < entries; ++e) ++lists.first[Index(owner(e)) + 1];
-  for (std::size_t i = 0; i < Index(count); ++i) lists.first[i + 1] += lists.first[i];
-  lists.entry.resize(entries);
-  std::vector<std::int32_t> next(lists.first.begin(), lists.first.end() - 1);
-  for (std::size_t e = 0; e < entries; ++e) lists.entry[Index(next[Index(owner(e))]++)] = static_cast<std::int32_t>(e);
-  return lists;
-}
-
 /// A hinge's four vertices, unfolded into the plane: the edge along x.
 void Unfold(const FabricModel& model, FabricHinge& hinge) {
   Vec3 at[4];
@@ -226,7 +214,6 @@ FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes) {
 void TakeMaterials(const Scene& scene, FabricModel& model) {
   model.membranes.clear();
   model.pressure.clear();
-  model.plateStiffness.clear();
   model.bendDamping.clear();
   model.anyHinges = false;
   model.plate.clear();
@@ -243,7 +230,6 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     membrane.neoHookean = NeoHookeanMembrane(0.5 * (cloth.stretchWarp + cloth.stretchWeft), cloth.poissonRatio);
     model.membranes.push_back(membrane);
     model.pressure.push_back(cloth.pressure);
-    model.plateStiffness.push_back(std::sqrt(cloth.bendWarp * cloth.bendWeft));
     model.bendDamping.push_back(cloth.bendDamping);
     const bool plate = cloth.bendingLaw == BendingLaw::Quadratic;
     model.anyHinges = model.anyHinges || !plate;
@@ -282,6 +268,14 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
                                  : MakeBendingMatrix(stiffness, points, areaAcross);
   }
   AssemblePlates(model);
+  model.buckling.assign(model.triangles.size(), 0);
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const Triangle& tri = model.triangles[t];
+    const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
+    const double mass = model.mass[Index(tri.a)] + model.mass[Index(tri.b)] + model.mass[Index(tri.c)];
+    const double area = model.rest[t].area;
+    if (area > 0) model.buckling[t] = 2 * std::sqrt(std::sqrt(cloth.bendWarp * cloth.bendWeft) * mass / (6 * area));
+  }
 }
 
 }  // namespace percale::fabric

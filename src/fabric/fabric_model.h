@@ -36,6 +36,20 @@ struct Membrane {
 struct Lists {
   std::vector<std::int32_t> first, entry;
 };
+/// Lists of 0 .. entries-1 by what each belongs to, owner(entry), ascending.
+template <class Owner>
+Lists ListBy(int count, std::size_t entries, Owner&& owner) {
+  Lists lists;
+  lists.first.assign(static_cast<std::size_t>(count) + 1, 0);
+  for (std::size_t e = 0; e < entries; ++e) ++lists.first[static_cast<std::size_t>(owner(e)) + 1];
+  for (std::size_t i = 1; i < lists.first.size(); ++i) lists.first[i] += lists.first[i - 1];
+  lists.entry.resize(entries);
+  std::vector<std::int32_t> next(lists.first.begin(), lists.first.end() - 1);
+  for (std::size_t e = 0; e < entries; ++e) {
+    lists.entry[static_cast<std::size_t>(next[static_cast<std::size_t>(owner(e))]++)] = static_cast<std::int32_t>(e);
+  }
+  return lists;
+}
 
 struct FabricModel {
   // Geometry.
@@ -64,7 +78,8 @@ struct FabricModel {
   std::vector<std::uint8_t> plate;             ///< Per vertex: 1 where the cloth bends by BendingLaw::Quadratic.
   ScalarMatrix plates;                         ///< Bending of all cloths as a quadratic of the positions, each row
                                                ///< with an entry on the diagonal [N/m].
-  std::vector<double> plateStiffness;          ///< Per cloth: geometric mean of those along warp and weft [N m].
+  std::vector<double> buckling;                ///< Per triangle: a plate's buckling stress on its own inertia over a
+                                               ///< step, times the step, 2 sqrt(D rho) [N s/m].
   bool anyHinges = false;                      ///< Whether any cloth bends by BendingLaw::Hinges.
 
   int Cloths() const { return static_cast<int>(firstVertex.size()) - 1; }

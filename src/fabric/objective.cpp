@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "fabric/energy/air.h"
+
 namespace percale::fabric {
 namespace {
 
@@ -21,18 +23,44 @@ Vector3<double> At(std::span<const Vec3> y, std::int32_t v) {
 
 }  // namespace
 
-Objective::Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor)
-    : model_(model), executor_(executor), blocks_(TriangleBlocks(pattern, model.triangles)) {
-  startStrain_.resize(model.triangles.size());
-  triangleGradient_.resize(model.triangles.size());
-  triangleHessian_.resize(model.triangles.size());
+Objective::Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor,
+                     const Kernels& kernels)
+    : model_(model), pattern_(pattern), executor_(executor), kernels_(kernels) {
+  const std::size_t triangles = model.triangles.size();
+  FindParts();
+  for (int c = 0; c < model.Cloths(); ++c) {
+    const int end = model.firstTriangle[Index(c) + 1];
+    for (int t = model.firstTriangle[Index(c)]; t < end; t += kRowsPerChunk) {
+      batches_.push_back({c, t, std::min(t + kRowsPerChunk, end)});
+    }
+  }
+  for (std::vector<double>* padded : {&area_, &inverse_[0], &inverse_[1], &inverse_[2], &inverse_[3], &startStrain_[0],
+                                      &startStrain_[1], &startStrain_[2], &buckling_}) {
+    padded->assign(triangles + kTrianglePad, 0);
+  }
+  for (std::size_t t = 0; t < triangles; ++t) {
+    area_[t] = model.rest[t].area;
+    for (std::size_t k = 0; k < 4; ++k) inverse_[k][t] = model.rest[t].inverse[k];
+  }
+  triangleGradient_.resize(3 * triangles);
+  triangleHessian_.assign(kHessianReals * triangles, 0);
   startAngle_.resize(model.hinges.size());
   angle_.resize(model.hinges.size());
   moment_.resize(model.hinges.size());
   hinge_.resize(model.hinges.size());
-  const auto items =
-      std::max({static_cast<std::size_t>(model.vertexCount), model.triangles.size(), model.hinges.size()});
-  chunkSums_.resize(items / kRowsPerChunk + 1);
+  const auto items = std::max(static_cast<std::size_t>(model.vertexCount), triangles);
+  chunkSums_.resize(std::max(batches_.size(), items / kRowsPerChunk + 1));
+}
+
+/// Which blocks of triangles each block of the matrix is the sum of.
+void Objective::FindParts() {
+  const std::vector<std::array<std::int32_t, 9>> blocks = TriangleBlocks(pattern_, model_.triangles);
+  const std::size_t count = 3 * blocks.size();  // 3 t + k is corner k of triangle t with corner k + 1
+  same_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][e % 3 * 3 + (e + 1) % 3]; });
+  transposed_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][(e + 1) % 3 * 3 + e % 3]; });
+  for (Lists* lists : {&same_, &transposed_}) {
+    for (std::int32_t& e : lists->entry) e = e / 3 * kHessianReals + e % 3 * 9;
+  }
 }
 
 /// Sums body(begin, end) over chunks of 0..count-1, in order.
@@ -50,11 +78,10 @@ double Objective::Sum(int count, Body&& body) {
 
 void Objective::Begin(const StepSettings& step) {
   step_ = step;
-  ForRange(executor_, model_.triangles.size(), [&](int t) {
-    if (model_.membranes[Index(model_.clothOf[Index(t)])].damping == 0) return;
-    const Triangle& tri = model_.triangles[Index(t)];
-    startStrain_[Index(t)] = GreenStrain(
-        Deformation(model_.rest[Index(t)], At(step.start, tri.a), At(step.start, tri.b), At(step.start, tri.c)));
+  std::copy(model_.buckling.begin(), model_.buckling.end(), buckling_.begin());
+  executor_.ForChunks(static_cast<int>(batches_.size()), [&](int batch) {
+    const MembraneArgs arguments = Arguments(step.start, batch);
+    if (arguments.damping != 0) kernels_.membraneStrain(arguments);
   });
   if (model_.anyHinges) {
     EvaluateHinges(step.start, false);
@@ -96,27 +123,34 @@ double Objective::ElasticEnergy(std::span<const Vec3> y) {
   return energy;
 }
 
-double Objective::MembraneEnergy(std::span<const Vec3> y) {
-  return Sum(static_cast<int>(model_.triangles.size()), [&](int begin, int end) {
-    double sum = 0;
-    for (int t = begin; t < end; ++t) {
-      const Triangle& tri = model_.triangles[Index(t)];
-      const RestTriangle<double>& rest = model_.rest[Index(t)];
-      const Membrane& membrane = model_.membranes[Index(model_.clothOf[Index(t)])];
-      const DeformationGradient<double> f = Deformation(rest, At(y, tri.a), At(y, tri.b), At(y, tri.c));
-      const double density = membrane.kind == MembraneLaw::NeoHookean
-                                 ? Stress(membrane.neoHookean, f).energy
-                                 : Stress(membrane.orthotropic, f, Damping(t)).energy;
-      sum += rest.area * density;
-    }
-    return sum;
-  });
+MembraneArgs Objective::Arguments(std::span<const Vec3> y, int batch) {
+  const Batch& of = batches_[Index(batch)];
+  const Membrane& membrane = model_.membranes[Index(of.cloth)];
+  const double perStep = step_.h > 0 ? 1 / step_.h : 0;
+  return {.begin = of.begin,
+          .end = of.end,
+          .triangles = model_.triangles.data(),
+          .x = y.data(),
+          .area = area_.data(),
+          .inverse = {inverse_[0].data(), inverse_[1].data(), inverse_[2].data(), inverse_[3].data()},
+          .law = membrane.kind,
+          .orthotropic = membrane.orthotropic,
+          .neoHookean = membrane.neoHookean,
+          .damping = membrane.damping * perStep,
+          .startStrain = {startStrain_[0].data(), startStrain_[1].data(), startStrain_[2].data()},
+          .buckling = buckling_.data(),
+          .compression = kCompressionShare * perStep,
+          .gradient = triangleGradient_.data(),
+          .hessian = triangleHessian_.data()};
 }
 
-MembraneDamping<double> Objective::Damping(int t) const {
-  const double time = model_.membranes[Index(model_.clothOf[Index(t)])].damping;
-  if (time == 0 || step_.h == 0) return {};
-  return {time / step_.h, startStrain_[Index(t)]};
+double Objective::MembraneEnergy(std::span<const Vec3> y) {
+  const int batches = static_cast<int>(batches_.size());
+  executor_.ForChunks(batches,
+                      [&](int batch) { chunkSums_[Index(batch)] = kernels_.membraneEnergy(Arguments(y, batch)); });
+  double sum = 0;
+  for (int batch = 0; batch < batches; ++batch) sum += chunkSums_[Index(batch)];
+  return sum;
 }
 
 double Objective::BendingEnergy(std::span<const Vec3> y) {
@@ -180,60 +214,48 @@ BendingMoments<double> Objective::Bend(int t) const {
   return Moments(model_.bending[Index(t)], angle, rest, damping);
 }
 
-/// Compression that a second derivative may keep, for wrinkles to form [N/m].
-double Objective::CompressionFloor(int t) const {
-  const RestTriangle<double>& rest = model_.rest[Index(t)];
-  const Triangle& tri = model_.triangles[Index(t)];
-  const double density =
-      (model_.mass[Index(tri.a)] + model_.mass[Index(tri.b)] + model_.mass[Index(tri.c)]) / (6 * rest.area);
-  return kCompressionShare * 2 * std::sqrt(model_.plateStiffness[Index(model_.clothOf[Index(t)])] * density) / step_.h;
-}
-
-template <bool withTangent>
-void Objective::EvaluateTriangles(std::span<const Vec3> y) {
-  ForRange(executor_, model_.triangles.size(), [&](int t) {
-    const Triangle& tri = model_.triangles[Index(t)];
-    const RestTriangle<double>& rest = model_.rest[Index(t)];
-    const Membrane& membrane = model_.membranes[Index(model_.clothOf[Index(t)])];
-    const DeformationGradient<double> f = Deformation(rest, At(y, tri.a), At(y, tri.b), At(y, tri.c));
-    const auto evaluate = [&](const auto& law, const auto&... damping) {
-      triangleGradient_[Index(t)] = CornerGradient(rest, Stress(law, f, damping...));
-      if constexpr (withTangent) {
-        triangleHessian_[Index(t)] = CornerHessian(rest, Tangent(law, f, CompressionFloor(t), damping...));
-      }
-    };
-    if (membrane.kind == MembraneLaw::NeoHookean)
-      evaluate(membrane.neoHookean);
-    else
-      evaluate(membrane.orthotropic, Damping(t));
+void Objective::EvaluateTriangles(std::span<const Vec3> y, bool withTangent) {
+  executor_.ForChunks(static_cast<int>(batches_.size()), [&](int batch) {
+    (withTangent ? kernels_.membraneTangent : kernels_.membraneGradient)(Arguments(y, batch));
+    AddPressure(y, batches_[Index(batch)]);
   });
 }
 
+void Objective::AddPressure(std::span<const Vec3> y, const Batch& batch) {
+  const double pressure = model_.pressure[Index(batch.cloth)];
+  if (pressure == 0) return;
+  for (int t = batch.begin; t < batch.end; ++t) {
+    const Triangle& tri = model_.triangles[Index(t)];
+    const EnclosedVolume<double> volume = Volume(At(y, tri.a), At(y, tri.b), At(y, tri.c));
+    for (int k = 0; k < 3; ++k) triangleGradient_[3 * Index(t) + Index(k)] -= ToVec3(volume.gradient[k] * pressure);
+  }
+}
+
 void Objective::Gradient(std::span<const Vec3> y, std::span<Vec3> gradient) {
-  EvaluateTriangles<false>(y);
+  EvaluateTriangles(y, false);
   Gather(y, gradient);
 }
 
 void Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix) {
-  EvaluateTriangles<true>(y);
+  EvaluateTriangles(y, true);
   Gather(y, gradient);
-  matrix.Reset(executor_);
-  ForRange(executor_, Index(model_.vertexCount), [&](int v) {
-    const auto add = [](Real* block, const Matrix3<double>& m, bool transposed) {
-      for (int c = 0; c < 3; ++c) {
-        for (int r = 0; r < 3; ++r) block[3 * c + r] += static_cast<Real>(transposed ? m(c, r) : m(r, c));
-      }
-    };
-    for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
-      const std::int32_t corner = model_.corners.entry[Index(e)], t = corner / 3, k = corner % 3;
-      const TriangleHessian<double>& hessian = triangleHessian_[Index(t)];
-      const std::array<std::int32_t, 9>& at = blocks_[Index(t)];
-      const std::int32_t next = (k + 1) % 3, previous = (k + 2) % 3;
-      add(matrix.Block(at[Index(3 * k + k)]), hessian.diagonal[k], false);
-      add(matrix.Block(at[Index(3 * k + next)]), hessian.next[k], false);
-      add(matrix.Block(at[Index(3 * k + previous)]), hessian.next[previous], true);
-      if (e == model_.corners.first[Index(v)])
-        add(matrix.Block(at[Index(3 * k + k)]), step_.loads[Index(v)].stiffness, false);
+  executor_.ForChunks(Chunks(model_.vertexCount), [&](int chunk) {
+    const int begin = chunk * kRowsPerChunk, end = std::min(begin + kRowsPerChunk, model_.vertexCount);
+    kernels_.assemble({.begin = begin,
+                       .end = end,
+                       .first = pattern_.first.data(),
+                       .column = pattern_.column.data(),
+                       .constant = matrix.constant().data(),
+                       .sameFirst = same_.first.data(),
+                       .same = same_.entry.data(),
+                       .transposedFirst = transposed_.first.data(),
+                       .transposed = transposed_.entry.data(),
+                       .hessian = triangleHessian_.data(),
+                       .blocks = matrix.Block(0)});
+    for (int v = begin; v < end; ++v) {
+      const Matrix3<double>& stiffness = step_.loads[Index(v)].stiffness;
+      Real* block = matrix.DiagonalBlock(v);
+      for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
     }
   });
   matrix.Finish(executor_);
@@ -264,13 +286,7 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient) {
     Vec3 sum = off * (model_.mass[Index(v)] * perStep) - load.force +
                ToVec3(load.stiffness * From<double>(y[Index(v)] - step_.start[Index(v)]));
     for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
-      const std::int32_t corner = model_.corners.entry[Index(e)], t = corner / 3;
-      sum += ToVec3(triangleGradient_[Index(t)].corner[corner % 3]);
-      const double pressure = model_.pressure[Index(model_.clothOf[Index(t)])];
-      if (pressure == 0) continue;
-      const Triangle& tri = model_.triangles[Index(t)];
-      const std::int32_t at[3] = {tri.a, tri.b, tri.c};
-      sum -= Cross(y[Index(at[(corner + 1) % 3])], y[Index(at[(corner + 2) % 3])]) * (pressure / 6);
+      sum += triangleGradient_[Index(model_.corners.entry[Index(e)])];
     }
     if (model_.plate[Index(v)]) {
       sum += PlateForce(y, v);

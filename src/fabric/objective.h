@@ -11,6 +11,7 @@
 
 #include "core/executor.h"
 #include "fabric/fabric_model.h"
+#include "fabric/kernels.h"
 #include "fabric/system_matrix.h"
 #include "percale/vec3.h"
 
@@ -34,7 +35,8 @@ struct StepSettings {
 class Objective {
  public:
   /// Both must outlive it. `pattern`: of the matrix to be filled, with the blocks of all triangles.
-  Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor);
+  Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor,
+            const Kernels& kernels = BestKernels());
 
   /// Takes over the settings of a step; their spans must stay.
   void Begin(const StepSettings& step);
@@ -50,27 +52,35 @@ class Objective {
   double ElasticEnergy(std::span<const Vec3> y);
 
  private:
+  /// Triangles of one cloth that one chunk of a loop covers.
+  struct Batch {
+    std::int32_t cloth, begin, end;
+  };
+
   double MembraneEnergy(std::span<const Vec3> y);
   double BendingEnergy(std::span<const Vec3> y);
-  MembraneDamping<double> Damping(int triangle) const;
-  double CompressionFloor(int triangle) const;
   BendingMoments<double> Bend(int triangle) const;
   Vec3 PlateForce(std::span<const Vec3> y, int vertex) const;
-  template <bool withTangent>
-  void EvaluateTriangles(std::span<const Vec3> y);
+  void FindParts();
+  MembraneArgs Arguments(std::span<const Vec3> y, int batch);
+  void EvaluateTriangles(std::span<const Vec3> y, bool withTangent);
+  void AddPressure(std::span<const Vec3> y, const Batch& batch);
   void EvaluateHinges(std::span<const Vec3> y, bool withGradient);
   void Gather(std::span<const Vec3> y, std::span<Vec3> gradient);
   template <class Body>
   double Sum(int count, Body&& body);
 
   const FabricModel& model_;
+  const BlockPattern& pattern_;
   const Executor& executor_;
+  const Kernels& kernels_;
   StepSettings step_;
-  std::vector<std::array<std::int32_t, 9>> blocks_;  // per triangle: where its Hessian goes
-  // Per triangle:
-  std::vector<MembraneStrain<double>> startStrain_;
-  std::vector<TriangleGradient<double>> triangleGradient_;
-  std::vector<TriangleHessian<double>> triangleHessian_;
+  Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
+  std::vector<Batch> batches_;
+  // Per triangle, as MembraneArgs has it:
+  std::vector<double> area_, inverse_[4], startStrain_[3], buckling_;
+  std::vector<Vec3> triangleGradient_;
+  RealVector triangleHessian_;
   // Per hinge:
   std::vector<double> startAngle_, angle_, moment_;
   std::vector<Hinge<double>> hinge_;

@@ -91,10 +91,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     const TriangleGradient<double> g = CornerGradient(rest, stress);
     for (int k = 0; k < 3; ++k) addGradient(corners[k], g.corner[k]);
     if (addBlock) {
-      const double mass = (model_.mass[Index(tri.a)] + model_.mass[Index(tri.b)] + model_.mass[Index(tri.c)]) / 3;
-      const double floor =
-          step_.h > 0 ? floorShare * 2 * std::sqrt(model_.plateStiffness[cloth] * mass / (2 * rest.area)) * perStep
-                      : std::numeric_limits<double>::max();
+      const double floor = step_.h > 0 ? floorShare * model_.buckling[t] * perStep : std::numeric_limits<double>::max();
       const TriangleHessian<double> h = CornerHessian(
           rest, rubber ? Tangent(membrane.neoHookean, f, floor) : Tangent(membrane.orthotropic, f, floor, damping));
       for (int k = 0; k < 3; ++k) {

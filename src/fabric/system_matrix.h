@@ -91,6 +91,9 @@ class SystemMatrix {
   /// row with displacement component c of its column is at 3 c + r. To be added to.
   Real* Block(std::int32_t index) { return &blocks_[9 * static_cast<std::size_t>(index)]; }
   const Real* Block(std::int32_t index) const { return &blocks_[9 * static_cast<std::size_t>(index)]; }
+  Real* DiagonalBlock(int row) { return Block(diagonal_[static_cast<std::size_t>(row)]); }
+  /// Per block what S has there: who writes all blocks himself adds it to their diagonals, and needs no Reset.
+  std::span<const Real> constant() const { return constant_; }
   /// Sets E. Allocates only when there is more of it than ever before. Leaving it out keeps E.
   void SetExtra(std::span<const ExtraBlock> blocks, const Executor& executor);
   /// Ends the filling: clears what belongs to pinned vertices and inverts the diagonal.

@@ -1,0 +1,59 @@
+// The blocks of the matrix from those of the triangles. Included by kernels_impl.h inside the namespace of an
+// instruction set; never elsewhere.
+
+using Floats4 = Pack<Real, 4, Level>;
+
+/// A block's columns, each with one number behind it that does not count.
+struct Columns {
+  Floats4 c[3];
+
+  Columns& operator+=(const Columns& o) {
+    for (int k = 0; k < 3; ++k) c[k] += o.c[k];
+    return *this;
+  }
+};
+inline Columns LoadColumns(const Real* block) {
+  return {{Floats4::Load(block), Floats4::Load(block + 3), Floats4::Load(block + 6)}};
+}
+inline Columns Transposed(const Columns& a) {
+#if defined(__GNUC__)
+  const auto low = __builtin_shufflevector(a.c[0].v, a.c[1].v, 0, 4, 1, 5);
+  const auto high = __builtin_shufflevector(a.c[0].v, a.c[1].v, 2, 6, 3, 7);
+  return {{Floats4(__builtin_shufflevector(low, a.c[2].v, 0, 1, 4, 7)),
+           Floats4(__builtin_shufflevector(low, a.c[2].v, 2, 3, 5, 7)),
+           Floats4(__builtin_shufflevector(high, a.c[2].v, 0, 1, 6, 7))}};
+#else
+  Columns b;
+  for (int k = 0; k < 9; ++k) b.c[k / 3].v[k % 3] = a.c[k % 3].v[k / 3];
+  return b;
+#endif
+}
+/// `a` plus `s` on the diagonal.
+inline void StoreBlock(Columns a, Real s, Real* block) {
+  for (int k = 0; k < 3; ++k) a.c[k].v[k] += s;
+  a.c[0].Store(block);
+  a.c[1].Store(block + 3);
+  for (int r = 0; r < 3; ++r) block[6 + r] = a.c[2][r];
+}
+
+void Assemble(const AssembleArgs& a) {
+  for (int row = a.begin; row < a.end; ++row) {
+    Columns sum;
+    std::int32_t diagonal = -1;
+    for (std::int32_t k = a.first[row]; k < a.first[row + 1]; ++k) {
+      if (a.column[k] == row) {
+        diagonal = k;
+        continue;
+      }
+      Columns block;
+      for (std::int32_t e = a.sameFirst[k]; e < a.sameFirst[k + 1]; ++e) block += LoadColumns(a.hessian + a.same[e]);
+      for (std::int32_t e = a.transposedFirst[k]; e < a.transposedFirst[k + 1]; ++e) {
+        block += Transposed(LoadColumns(a.hessian + a.transposed[e]));
+      }
+      sum += block;
+      StoreBlock(block, a.constant[k], a.blocks + 9 * static_cast<std::int64_t>(k));
+    }
+    for (Floats4& c : sum.c) c = -c;
+    StoreBlock(sum, a.constant[diagonal], a.blocks + 9 * static_cast<std::int64_t>(diagonal));
+  }
+}

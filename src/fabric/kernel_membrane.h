@@ -1,0 +1,162 @@
+// The membrane, kLanes triangles at a time. Included by kernels_impl.h inside the namespace of an instruction set;
+// never elsewhere. Positions, strains, energies and the gradient are in double, the second derivative in float.
+
+static_assert(kLanes <= kTrianglePad && kTrianglePad % kLanes == 0);
+
+/// kLanes triangles from `first` on. Where there are fewer the last stands in for what is missing.
+struct Triangles {
+  RestTriangle<Doubles> rest;
+  DeformationGradient<Doubles> f;
+};
+
+inline Triangles LoadTriangles(const MembraneArgs& a, int first, int count) {
+  alignas(64) double edge[6][kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const Triangle& t = a.triangles[first + (i < count ? i : count - 1)];
+    const Vec3 &x0 = a.x[t.a], &x1 = a.x[t.b], &x2 = a.x[t.c];
+    edge[0][i] = x1.x - x0.x, edge[1][i] = x1.y - x0.y, edge[2][i] = x1.z - x0.z;
+    edge[3][i] = x2.x - x0.x, edge[4][i] = x2.y - x0.y, edge[5][i] = x2.z - x0.z;
+  }
+  const Vector3<Doubles> e1{Doubles::Load(edge[0]), Doubles::Load(edge[1]), Doubles::Load(edge[2])};
+  const Vector3<Doubles> e2{Doubles::Load(edge[3]), Doubles::Load(edge[4]), Doubles::Load(edge[5])};
+  Triangles triangles;
+  triangles.rest.area = Doubles::Load(a.area + first);
+  for (int k = 0; k < 4; ++k) triangles.rest.inverse[k] = Doubles::Load(a.inverse[k] + first);
+  triangles.f = Deformation(triangles.rest, Vector3<Doubles>{}, e1, e2);
+  return triangles;
+}
+
+template <class T>
+StVenantKirchhoff<T> InLanes(const StVenantKirchhoff<double>& law) {
+  return {T(law.c11),
+          T(law.c12),
+          T(law.c22),
+          T(law.c33),
+          T(law.limitU),
+          T(law.limitV),
+          T(law.limitStiffnessU),
+          T(law.limitStiffnessV)};
+}
+template <class T>
+StableNeoHookean<T> InLanes(const StableNeoHookean<double>& law) {
+  return {T(law.mu), T(law.lambdaPrime)};
+}
+
+inline MembraneDamping<Doubles> LoadDamping(const MembraneArgs& a, int first) {
+  if (a.damping == 0) return {};
+  return {Doubles(a.damping),
+          {Doubles::Load(a.startStrain[0] + first), Doubles::Load(a.startStrain[1] + first),
+           Doubles::Load(a.startStrain[2] + first)}};
+}
+
+inline Vector3<Floats> ToFloats(const Vector3<Doubles>& v) {
+  return {Floats(v.x), Floats(v.y), Floats(v.z)};
+}
+
+/// Calls body(first, count) for kLanes triangles at a time.
+template <class Body>
+inline void ForTriangles(const MembraneArgs& a, Body&& body) {
+  for (int first = a.begin; first < a.end; first += kLanes)
+    body(first, a.end - first < kLanes ? a.end - first : kLanes);
+}
+
+[[gnu::flatten]] void MembraneStrains(const MembraneArgs& a) {
+  ForTriangles(a, [&](int first, int count) {
+    const MembraneStrain<Doubles> strain = GreenStrain(LoadTriangles(a, first, count).f);
+    for (int i = 0; i < count; ++i) {
+      a.startStrain[0][first + i] = strain.e11[i];
+      a.startStrain[1][first + i] = strain.e22[i];
+      a.startStrain[2][first + i] = strain.shear[i];
+    }
+  });
+}
+
+// The two laws alike: only one knows of damping.
+template <class T>
+MembraneStress<T> StressOf(const StVenantKirchhoff<T>& law, const DeformationGradient<T>& f,
+                           const MembraneDamping<T>& damping) {
+  return Stress(law, f, damping);
+}
+template <class T>
+MembraneStress<T> StressOf(const StableNeoHookean<T>& law, const DeformationGradient<T>& f, const MembraneDamping<T>&) {
+  return Stress(law, f);
+}
+template <class T>
+MembraneTangent<T> TangentOf(const StVenantKirchhoff<T>& law, const DeformationGradient<T>& f, T floor,
+                             const MembraneDamping<T>& damping) {
+  return Tangent(law, f, floor, damping);
+}
+template <class T>
+MembraneTangent<T> TangentOf(const StableNeoHookean<T>& law, const DeformationGradient<T>& f, T floor,
+                             const MembraneDamping<T>&) {
+  return Tangent(law, f, floor);
+}
+
+[[gnu::flatten]] double EnergyBy(const MembraneArgs& a, const auto& law) {
+  // Sums go by the place of a triangle modulo kTrianglePad, so that they do not depend on kLanes.
+  constexpr int kSums = kTrianglePad / kLanes;
+  Doubles sums[kSums];
+  int next = 0;
+  ForTriangles(a, [&](int first, int count) {
+    const Triangles t = LoadTriangles(a, first, count);
+    Doubles energy = t.rest.area * StressOf(law, t.f, LoadDamping(a, first)).energy;
+    for (int i = count; i < kLanes; ++i) energy.v[i] = 0;
+    sums[next] += energy;
+    next = (next + 1) % kSums;
+  });
+  double total = 0;
+  for (int i = 0; i < kTrianglePad; ++i) total += sums[i / kLanes][i % kLanes];
+  return total;
+}
+
+double MembraneEnergy(const MembraneArgs& a) {
+  return a.law == MembraneLaw::NeoHookean ? EnergyBy(a, InLanes<Doubles>(a.neoHookean))
+                                          : EnergyBy(a, InLanes<Doubles>(a.orthotropic));
+}
+
+template <bool withTangent>
+[[gnu::flatten]] void DerivativesBy(const MembraneArgs& a, const auto& law, const auto& floatLaw) {
+  ForTriangles(a, [&](int first, int count) {
+    const Triangles t = LoadTriangles(a, first, count);
+    const MembraneDamping<Doubles> damping = LoadDamping(a, first);
+    const TriangleGradient<Doubles> gradient = CornerGradient(t.rest, StressOf(law, t.f, damping));
+    double lanes[9][kLanes];
+    for (int k = 0; k < 3; ++k) {
+      gradient.corner[k].x.Store(lanes[3 * k]);
+      gradient.corner[k].y.Store(lanes[3 * k + 1]);
+      gradient.corner[k].z.Store(lanes[3 * k + 2]);
+    }
+    for (int i = 0; i < count; ++i) {
+      Vec3* to = a.gradient + 3 * static_cast<std::int64_t>(first + i);
+      for (int k = 0; k < 3; ++k) {
+        to[k].x = lanes[3 * k][i], to[k].y = lanes[3 * k + 1][i], to[k].z = lanes[3 * k + 2][i];
+      }
+    }
+    if constexpr (withTangent) {
+      RestTriangle<Floats> rest;
+      rest.area = Floats(t.rest.area);
+      for (int k = 0; k < 4; ++k) rest.inverse[k] = Floats(t.rest.inverse[k]);
+      const DeformationGradient<Floats> f{ToFloats(t.f.u), ToFloats(t.f.v)};
+      const MembraneDamping<Floats> floatDamping{
+          Floats(damping.rate), {Floats(damping.start.e11), Floats(damping.start.e22), Floats(damping.start.shear)}};
+      const Floats floor(Doubles::Load(a.buckling + first) * Doubles(a.compression));
+      const TriangleHessian<Floats> hessian = CornerHessian(rest, TangentOf(floatLaw, f, floor, floatDamping));
+      Real blocks[27][kLanes];
+      for (int k = 0; k < 3; ++k) {
+        for (int c = 0; c < 9; ++c) hessian.next[k].m[c % 3 * 3 + c / 3].Store(blocks[9 * k + c]);
+      }
+      for (int i = 0; i < count; ++i) {
+        Real* to = a.hessian + kHessianReals * static_cast<std::int64_t>(first + i);
+        for (int k = 0; k < 27; ++k) to[k] = blocks[k][i];
+      }
+    }
+  });
+}
+
+template <bool withTangent>
+void MembraneDerivatives(const MembraneArgs& a) {
+  if (a.law == MembraneLaw::NeoHookean)
+    DerivativesBy<withTangent>(a, InLanes<Doubles>(a.neoHookean), InLanes<Floats>(a.neoHookean));
+  else
+    DerivativesBy<withTangent>(a, InLanes<Doubles>(a.orthotropic), InLanes<Floats>(a.orthotropic));
+}

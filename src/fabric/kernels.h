@@ -1,0 +1,77 @@
+#pragma once
+/// \file
+/// The inner loops of the continuum engine: pure functions over arrays that the caller owns. The same source is
+/// compiled for several instruction sets and chosen once at run time (`BestKernels`); none of them contracts or
+/// reorders arithmetic, so all give the same bits.
+
+#include <cstdint>
+#include <vector>
+
+#include "fabric/energy/membrane.h"
+#include "fabric/real.h"
+#include "percale/mesh.h"
+#include "percale/scene.h"
+#include "percale/vec3.h"
+
+namespace percale::fabric {
+
+/// Kernels read so many numbers behind the last triangle's.
+inline constexpr int kTrianglePad = 8;
+/// Reals that a triangle's second derivative takes.
+inline constexpr int kHessianReals = 28;
+
+/// Some triangles of one cloth. Arrays are from the first triangle of all on.
+struct MembraneArgs {
+  int begin, end;
+  const Triangle* triangles;
+  const Vec3* x;             ///< Positions [m].
+  const double* area;        ///< At rest [m^2]; padded, as are the next four.
+  const double* inverse[4];  ///< RestTriangle::inverse, one array per entry [1/m].
+  MembraneLaw law;
+  StVenantKirchhoff<double> orthotropic;
+  StableNeoHookean<double> neoHookean;
+  double damping;          ///< Time constant of strain rates over the length of the step; 0 for none.
+  double* startStrain[3];  ///< Strain at the start of the step, one array per component; padded.
+  const double* buckling;  ///< Compression that a second derivative may keep, over `compression` [N s/m]; padded.
+  double compression;      ///< How often buckling, over the length of the step [1/s].
+  Vec3* gradient;          ///< Out: by corner a, b, c of each triangle [N].
+  Real* hessian;  ///< Out: per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m]; then one Real.
+};
+
+/// Some rows of the matrix. Arrays are from the first row, block or triangle of all on.
+struct AssembleArgs {
+  int begin, end;
+  const std::int32_t* first;   ///< As in BlockPattern.
+  const std::int32_t* column;  ///< As in BlockPattern.
+  const Real* constant;        ///< Per block the scalar that stands on its diagonal besides.
+  // Per block off the diagonal the blocks of triangles that it is the sum of, as places in `hessian`: as they are, and
+  // transposed. Those of block k are [first[k], first[k + 1]).
+  const std::int32_t* sameFirst;
+  const std::int32_t* same;
+  const std::int32_t* transposedFirst;
+  const std::int32_t* transposed;
+  const Real* hessian;  ///< As MembraneArgs has it.
+  Real* blocks;         ///< Out.
+};
+
+struct Kernels {
+  const char* name;
+  /// Writes startStrain.
+  void (*membraneStrain)(const MembraneArgs&);
+  /// Returns the sum [J].
+  double (*membraneEnergy)(const MembraneArgs&);
+  /// Writes the gradient.
+  void (*membraneGradient)(const MembraneArgs&);
+  /// Writes the gradient and the second derivative, whose eigenvalues are bounded from below.
+  void (*membraneTangent)(const MembraneArgs&);
+  /// Writes the blocks. What a membrane does to a vertex and to its neighbours adds up to nothing, as no translation
+  /// strains it: so the block on the diagonal follows from the others.
+  void (*assemble)(const AssembleArgs&);
+};
+
+/// All that the processor can run, the plain ones first and the fastest last.
+std::vector<const Kernels*> RunnableKernels();
+/// The last of them.
+const Kernels& BestKernels();
+
+}  // namespace percale::fabric

@@ -1,0 +1,241 @@
+// Every kernel of every instruction set against the plain functions it stands for, and against each other to the bit.
+
+#include "fabric/kernels.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fabric/fabric_model.h"
+#include "fabric/system_matrix.h"
+#include "math/splitmix64.h"
+#include "tests/fabric/sheet.h"
+
+using namespace percale;
+using namespace percale::fabric;
+
+namespace {
+
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Triangles at random places, some without area at rest and some collapsed to a point or a line.
+struct Triangles {
+  explicit Triangles(int count) {
+    const auto unit = [&] { return 2 * random.NextUnit() - 1; };
+    for (int v = 0; v < 12; ++v) x.push_back({unit(), unit(), unit()});
+    for (int t = 0; t < count; ++t) {
+      const auto vertex = [&] { return static_cast<std::int32_t>(random.Next() % x.size()); };
+      const std::int32_t a = vertex();
+      triangles.push_back({a, t % 7 == 3 ? a : vertex(), t % 5 == 2 ? a : vertex()});
+      rest.push_back(t % 11 == 6 ? RestTriangle<double>{}
+                                 : MakeRestTriangle({0, 0}, {1 + 0.3 * unit(), unit()}, {0.5 * unit(), 1.0}));
+    }
+    const std::size_t padded = Index(count + kTrianglePad);
+    for (std::vector<double>* array :
+         {&area, &inverse[0], &inverse[1], &inverse[2], &inverse[3], &start[0], &start[1], &start[2], &buckling}) {
+      array->assign(padded, 0);
+    }
+    for (std::size_t t = 0; t < rest.size(); ++t) {
+      area[t] = rest[t].area;
+      for (std::size_t k = 0; k < 4; ++k) inverse[k][t] = rest[t].inverse[k];
+      for (std::vector<double>& strain : start) strain[t] = 0.1 * unit();
+      buckling[t] = random.NextUnit();
+    }
+    gradient.assign(3 * rest.size(), {7, 7, 7});
+    hessian.assign(kHessianReals * rest.size(), 7);
+  }
+
+  MembraneArgs Arguments(int begin, int end, MembraneLaw law, double damping) {
+    return {.begin = begin,
+            .end = end,
+            .triangles = triangles.data(),
+            .x = x.data(),
+            .area = area.data(),
+            .inverse = {inverse[0].data(), inverse[1].data(), inverse[2].data(), inverse[3].data()},
+            .law = law,
+            .orthotropic = orthotropic,
+            .neoHookean = neoHookean,
+            .damping = damping,
+            .startStrain = {start[0].data(), start[1].data(), start[2].data()},
+            .buckling = buckling.data(),
+            .compression = 90,
+            .gradient = gradient.data(),
+            .hessian = hessian.data()};
+  }
+  DeformationGradient<double> F(std::size_t t) const {
+    const auto at = [&](std::int32_t v) { return From<double>(x[Index(v)]); };
+    return Deformation(rest[t], at(triangles[t].a), at(triangles[t].b), at(triangles[t].c));
+  }
+
+  SplitMix64 random{5};
+  std::vector<Vec3> x;
+  std::vector<Triangle> triangles;
+  std::vector<RestTriangle<double>> rest;
+  std::vector<double> area, inverse[4], start[3], buckling;
+  StVenantKirchhoff<double> orthotropic{300, 60, 200, 100, 0.2, 0.3, 1000, 2000};
+  StableNeoHookean<double> neoHookean = NeoHookeanMembrane(261, 0.24);
+  std::vector<Vec3> gradient;
+  RealVector hessian;
+};
+
+constexpr int kCounts[] = {1, 2, 3, 7, 8, 9, 16, 37};
+
+}  // namespace
+
+TEST_CASE("the membrane's kernels agree with the law, triangle by triangle, and with each other to the bit") {
+  for (const int count : kCounts) {
+    for (const MembraneLaw law : {MembraneLaw::StVenantKirchhoff, MembraneLaw::NeoHookean}) {
+      for (const double damping : {0.0, 0.4}) {
+        const int begin = count > 8 ? 8 : 0;
+        Triangles reference(count);
+        double firstEnergy = 0;
+        for (const Kernels* kernels : RunnableKernels()) {
+          CAPTURE(kernels->name);
+          CAPTURE(count);
+          Triangles s(count);
+          const MembraneArgs arguments = s.Arguments(begin, count, law, damping);
+          const double energy = kernels->membraneEnergy(arguments);
+          kernels->membraneGradient(arguments);
+          const std::vector<Vec3> gradientOnly = s.gradient;
+          kernels->membraneTangent(arguments);
+          CHECK(gradientOnly == s.gradient);
+
+          double expectedEnergy = 0;
+          for (std::size_t t = 0; t < s.rest.size(); ++t) {
+            if (static_cast<int>(t) < begin) {
+              CHECK(s.gradient[3 * t] == Vec3{7, 7, 7});
+              CHECK(s.hessian[kHessianReals * t] == 7);
+              continue;
+            }
+            const auto compare = [&](const auto& of, const auto&... damped) {
+              const DeformationGradient<double> f = s.F(t);
+              const MembraneStress<double> stress = Stress(of, f, damped...);
+              expectedEnergy += s.rest[t].area * stress.energy;
+              const TriangleGradient<double> g = CornerGradient(s.rest[t], stress);
+              const TriangleHessian<double> h =
+                  CornerHessian(s.rest[t], Tangent(of, f, s.buckling[t] * arguments.compression, damped...));
+              // Without a normal any will do, and the law's second derivative depends on it.
+              const Vector3<double> cross = Cross(f.u, f.v);
+              const bool sameTangent = law != MembraneLaw::NeoHookean || Dot(cross, cross) > 1e-4;
+              double size = 1;
+              for (const Matrix3<double>& block : h.next) {
+                for (const double entry : block.m) size = std::max(size, std::abs(entry));
+              }
+              for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3 off = s.gradient[3 * t + k] - ToVec3(g.corner[k]);
+                CHECK(Dot(off, off) <= 1e-24 * (1 + Dot(g.corner[k], g.corner[k])));
+                for (int c = 0; c < 9; ++c) {
+                  const double entry = s.hessian[kHessianReals * t + 9 * k + Index(c)];
+                  CHECK(std::isfinite(entry));
+                  if (sameTangent) CHECK(std::abs(entry - h.next[k](c % 3, c / 3)) <= 3e-5 * size);
+                }
+              }
+            };
+            if (law == MembraneLaw::NeoHookean)
+              compare(s.neoHookean);
+            else
+              compare(s.orthotropic, MembraneDamping<double>{damping, {s.start[0][t], s.start[1][t], s.start[2][t]}});
+          }
+          CHECK(energy == doctest::Approx(expectedEnergy).epsilon(1e-12));
+
+          if (kernels == RunnableKernels().front()) {
+            firstEnergy = energy, reference.gradient = s.gradient, reference.hessian = s.hessian;
+          }
+          CHECK(energy == firstEnergy);
+          CHECK(s.gradient == reference.gradient);
+          CHECK(s.hessian == reference.hessian);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("strains at the start of a step are those of the triangles, and no others are written") {
+  for (const int count : kCounts) {
+    for (const Kernels* kernels : RunnableKernels()) {
+      CAPTURE(kernels->name);
+      Triangles s(count);
+      const std::vector<double> before = s.start[1];
+      kernels->membraneStrain(s.Arguments(0, count, MembraneLaw::StVenantKirchhoff, 1));
+      for (std::size_t t = 0; t < s.start[0].size(); ++t) {
+        if (t >= s.rest.size()) {
+          CHECK(s.start[1][t] == before[t]);
+          continue;
+        }
+        const MembraneStrain<double> strain = GreenStrain(s.F(t));
+        CHECK(s.start[0][t] == doctest::Approx(strain.e11).epsilon(1e-12));
+        CHECK(s.start[1][t] == doctest::Approx(strain.e22).epsilon(1e-12));
+        CHECK(s.start[2][t] == doctest::Approx(strain.shear).epsilon(1e-12));
+      }
+    }
+  }
+}
+
+TEST_CASE("the matrix is the sum of the triangles' blocks, and symmetric") {
+  const test::Sheet sheet = test::Disc(4);
+  const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);
+  const auto blocksOf = TriangleBlocks(pattern, sheet.triangles);
+  const std::size_t blocks = Index(pattern.blocks()), parts = 3 * sheet.triangles.size();
+  Lists same = ListBy(pattern.blocks(), parts, [&](std::size_t e) { return blocksOf[e / 3][e % 3 * 3 + (e + 1) % 3]; });
+  Lists transposed =
+      ListBy(pattern.blocks(), parts, [&](std::size_t e) { return blocksOf[e / 3][(e + 1) % 3 * 3 + e % 3]; });
+  for (Lists* lists : {&same, &transposed}) {
+    for (std::int32_t& e : lists->entry) e = e / 3 * kHessianReals + e % 3 * 9;
+  }
+  SplitMix64 random(3);
+  RealVector hessian(kHessianReals * sheet.triangles.size(), 0);
+  for (Real& entry : hessian) entry = static_cast<Real>(2 * random.NextUnit() - 1);
+  std::vector<Real> constant(blocks);
+  for (std::size_t k = 0; k < blocks; ++k) constant[k] = static_cast<Real>(0.01 * pattern.column[k]);
+
+  std::vector<double> expected(9 * blocks, 0);
+  for (std::size_t k = 0; k < blocks; ++k) {
+    for (const std::size_t c : {0, 4, 8}) expected[9 * k + c] += static_cast<double>(constant[k]);
+  }
+  for (std::size_t e = 0; e < parts; ++e) {
+    const auto& of = blocksOf[e / 3];
+    const std::size_t k = e % 3, l = (k + 1) % 3;
+    for (std::size_t c = 0; c < 9; ++c) {
+      const double entry = hessian[e / 3 * kHessianReals + 9 * k + c];
+      const std::size_t mirrored = c % 3 * 3 + c / 3;
+      expected[9 * Index(of[3 * k + l]) + c] += entry;
+      expected[9 * Index(of[3 * l + k]) + mirrored] += entry;
+      expected[9 * Index(of[4 * k]) + c] -= entry;
+      expected[9 * Index(of[4 * l]) + mirrored] -= entry;
+    }
+  }
+  RealVector first;
+  for (const Kernels* kernels : RunnableKernels()) {
+    CAPTURE(kernels->name);
+    RealVector filled(9 * blocks + 1, 7);
+    for (const int begin : {0, 20}) {
+      kernels->assemble({.begin = begin,
+                         .end = begin == 0 ? 20 : sheet.vertices(),
+                         .first = pattern.first.data(),
+                         .column = pattern.column.data(),
+                         .constant = constant.data(),
+                         .sameFirst = same.first.data(),
+                         .same = same.entry.data(),
+                         .transposedFirst = transposed.first.data(),
+                         .transposed = transposed.entry.data(),
+                         .hessian = hessian.data(),
+                         .blocks = filled.data()});
+    }
+    for (std::size_t k = 0; k < 9 * blocks; ++k) CHECK(std::abs(filled[k] - expected[k]) < 1e-5);
+    CHECK(filled[9 * blocks] == 7);
+    for (int row = 0; row < sheet.vertices(); ++row) {
+      for (std::int32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
+        if (pattern.column[k] == row) continue;
+        const std::int32_t mirror = pattern.Find(pattern.column[k], row);
+        for (const std::size_t c : {1, 2, 3, 5, 6, 7})  // the rest has a constant, here of no symmetry
+          CHECK(filled[9 * Index(k) + c] == filled[9 * Index(mirror) + c % 3 * 3 + c / 3]);
+      }
+    }
+    if (first.empty()) first = filled;
+    CHECK(filled == first);
+  }
+}
