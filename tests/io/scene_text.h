@@ -12,8 +12,9 @@
 namespace percale::test {
 
 /// One object of each group, every value valid, the cloth with two pins.
-inline Scene OneOfEach() {
+inline Scene OneOfEach(Engine engine = Engine::Springs) {
   Scene scene;
+  scene.simulation.engine = engine;
   for (const ParameterGroup& group : ParameterGroups()) group.resize(scene, 1);
   scene.cloths[0].pinned = {{0, 0}, {49, 0}};
   return scene;
@@ -24,9 +25,9 @@ struct SceneText {
   std::map<std::string, std::size_t> at;  ///< Offset of each value and object by path: "/cloth/ks", "/cloth".
 };
 
-/// `scene`, which holds one object of each group, as a text with one group per line. The value at
-/// `path` is written as `replacement`, or left out if that is empty. A comment of two-byte
-/// characters before each object's values tells columns from bytes.
+/// `scene`, which holds one object of each group, as a text with one group per line, of what its engine heeds. The
+/// value at `path` is written as `replacement`, or left out if that is empty. A comment of two-byte characters before
+/// each object's values tells columns from bytes.
 inline SceneText Write(const Scene& scene, const std::string& path = "",
                        const std::optional<std::string>& replacement = {}) {
   SceneText out;
@@ -41,7 +42,7 @@ inline SceneText Write(const Scene& scene, const std::string& path = "",
     }
     out.text += "{ \"_\": \"\xc3\xa9\xc3\xa9\"";
     for (const Parameter& p : Parameters()) {
-      if (p.group != group.name) continue;
+      if (p.group != group.name || !IsHeeded(p, scene)) continue;
       const std::string valuePath = groupPath + "/" + std::string(p.name);
       if (valuePath == path && !replacement) continue;
       out.text += ", \"" + std::string(p.name) + "\": ";

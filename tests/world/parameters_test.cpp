@@ -104,7 +104,8 @@ TEST_CASE("Names are unique, groups exist, defaults are in range, and everything
 
 TEST_CASE("Only what keeps the grid and its start the same acts on a running cloth") {
   const std::set<std::string_view> rebuild = {
-      "width", "height", "num_width_points", "num_height_points", "orientation", "origin", "seed"};
+      "width",  "height", "num_width_points", "num_height_points", "orientation",
+      "origin", "seed",   "warp_angle",       "bending_law"};
   for (const Parameter& p : Parameters()) {
     const bool expected = (p.group == "cloth" && rebuild.count(p.name) > 0) || p.name == "engine";
     CHECK_MESSAGE((p.effect == Effect::Rebuild) == expected, p.name);
