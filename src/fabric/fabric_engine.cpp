@@ -48,7 +48,7 @@ void FabricEngine::UpdatePins() {
 }
 
 void FabricEngine::Reset() {
-  position_ = previous_ = model_.start;
+  position_ = previous_ = predicted_ = model_.start;
   pins_.Reset([&](int v) { return model_.start[Index(v)]; });
   time_ = 0;
 }
@@ -199,6 +199,7 @@ void FabricEngine::WriteState(int cloth, std::span<const Vec3> positions, std::s
   const auto first = static_cast<std::ptrdiff_t>(model_.firstVertex[Index(cloth)]);
   std::copy(positions.begin(), positions.end(), position_.begin() + first);
   std::copy(previous.begin(), previous.end(), previous_.begin() + first);
+  std::copy(positions.begin(), positions.end(), predicted_.begin() + first);
   pins_.WriteAnchors(Index(cloth), anchors, [&](int v) { return position_[Index(v)]; });
   time_ = time;
 }
@@ -234,8 +235,9 @@ std::span<const double> FabricEngine::Masses(int cloth) const {
 
 VertexRef FabricEngine::FindOutOfBounds() const {
   for (int v = 0; v < model_.vertexCount; ++v) {
-    const Vec3& x = position_[Index(v)];
-    if (!(std::abs(x.x) <= kBound && std::abs(x.y) <= kBound && std::abs(x.z) <= kBound)) return RefOf(v);
+    for (const Vec3& x : {position_[Index(v)], predicted_[Index(v)]}) {
+      if (!(std::abs(x.x) <= kBound && std::abs(x.y) <= kBound && std::abs(x.z) <= kBound)) return RefOf(v);
+    }
   }
   return {};
 }

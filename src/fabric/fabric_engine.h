@@ -56,7 +56,7 @@ class FabricEngine {
   Stretch GreatestStretch() const;
   double ElasticEnergy();                           ///< [J]
   std::span<const double> Masses(int cloth) const;  ///< Of its vertices [kg].
-  /// The first vertex with a coordinate out of bounds.
+  /// The first vertex that is out of bounds, or that inertia leads there.
   VertexRef FindOutOfBounds() const;
 
  private:

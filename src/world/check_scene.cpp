@@ -15,7 +15,9 @@ namespace {
 /// 32 bits.
 constexpr std::int64_t kMostPoints = std::int64_t{1} << 27;
 /// What one point takes in a World and in a picture of it, measured generously [byte].
-constexpr std::int64_t kBytesPerPoint = 720;
+constexpr std::int64_t BytesPerPoint(Engine engine) {
+  return engine == Engine::Fabric ? 3600 : 720;
+}
 /// A spacing below this is lost in coordinates of the order of 1 m [m].
 constexpr double kSmallestSpacing = 1e-9;
 /// A normal shorter than this has no direction that could be trusted.
@@ -78,9 +80,10 @@ class Checker {
     std::int64_t most = kMostPoints;
     std::string why = "that the program can number";
     const std::uint64_t memory = AvailableMemory();
-    if (memory > 0 && memory / kBytesPerPoint < static_cast<std::uint64_t>(most)) {
-      most = static_cast<std::int64_t>(memory / kBytesPerPoint);
-      why = "that fit this machine's memory, at " + std::to_string(kBytesPerPoint) + " bytes each";
+    const std::int64_t bytesPerPoint = BytesPerPoint(scene_.simulation.engine);
+    if (memory > 0 && memory / static_cast<std::uint64_t>(bytesPerPoint) < static_cast<std::uint64_t>(most)) {
+      most = static_cast<std::int64_t>(memory / static_cast<std::uint64_t>(bytesPerPoint));
+      why = "that fit this machine's memory, at " + std::to_string(bytesPerPoint) + " bytes each";
     }
     if (points <= most) return;
     const ClothSettings& cloth = scene_.cloths[largest];

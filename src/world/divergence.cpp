@@ -11,6 +11,15 @@ Divergence ExplainDivergence(const Scene& scene, std::int64_t step, int cloth, i
   Divergence d{step, cloth, vertex, "", ""};
   const ClothSettings& settings = scene.cloths[static_cast<std::size_t>(cloth)];
   const std::string prefix = scene.cloths.size() > 1 ? "cloth." + std::to_string(cloth) + "." : "cloth.";
+  if (scene.simulation.engine == Engine::Fabric) {
+    d.cause =
+        "a vertex left the bounds of the simulation (1000 km from the origin), or a triangle became 1000 times too "
+        "long";
+    d.remedy =
+        "let the cloth be held by a pin, lower simulation.gravity, wind.velocity or cloth.pressure, or raise "
+        "simulation.steps_per_frame";
+    return d;
+  }
   const double largestKs = LargestStableKs(settings, scene.TimeStep());
   const double largestThickness = LargestSensibleThickness(settings);
   if (settings.ks >= largestKs) {

@@ -200,3 +200,15 @@ TEST_CASE("a state goes on to the same bits after it was saved and restored") {
   for (int frame = 0; frame < 10; ++frame) world.Step();
   CHECK(world.StateHash() == once);
 }
+
+TEST_CASE("cloth that flies out of the world ends the simulation, with what to do about it") {
+  Scene scene = HangingSheet(Fabric::Cotton, 5);
+  scene.cloths[0].pinned.clear();
+  scene.simulation.gravity = {0, -1e6, 0};
+  scene.wind.airDensity = 0;
+  World world(scene, {.threads = 1});
+  for (int frame = 0; frame < 600 && !world.report().divergence; ++frame) world.Step();
+  REQUIRE(world.report().divergence);
+  CHECK(world.report().divergence->remedy.find("pin") != std::string::npos);
+  for (const Vec3& x : world.Cloth(0).positions()) CHECK(std::abs(x.y) <= 1e6);
+}
