@@ -171,12 +171,11 @@ std::string Impossible(const WorldState& state) {
   for (std::size_t c = 0; c < state.cloths.size(); ++c) {
     const ClothSettings& settings = state.scene->cloths[c];
     const WorldState::Cloth& cloth = state.cloths[c];
-    const std::size_t points =
-        static_cast<std::size_t>(settings.numWidthPoints) * static_cast<std::size_t>(settings.numHeightPoints);
+    const auto points = static_cast<std::size_t>(VertexCount(settings));
     const std::string name = "cloth " + std::to_string(c);
     if (cloth.positions.size() != points || cloth.previous.size() != points) {
-      return name + " has " + std::to_string(cloth.positions.size()) + " points, and its grid " +
-             std::to_string(points);
+      return name + " has " + std::to_string(cloth.positions.size()) + " points, and its " +
+             (settings.shape == Shape::Grid ? "grid " : "mesh ") + std::to_string(points);
     }
     if (cloth.anchors.size() != PinnedVertices(settings).size()) return name + " has another number of pins";
     if (!AllFinite(cloth.positions) || !AllFinite(cloth.previous) || !AllFinite(cloth.anchors))
@@ -221,7 +220,7 @@ Result<std::string> ReadAll(const std::filesystem::path& file) {
 
 std::string FormatCheckpoint(const WorldState& state) {
   Writer body;
-  body.Text(FormatScene(*state.scene));
+  body.Text(FormatScene(WithAbsolutePaths(*state.scene)));
   ExchangeState(body, state);
   Writer head, tail;
   head.Number(kVersion);

@@ -10,8 +10,11 @@
 #include <vector>
 
 #include "core/text.h"
+#include "io/atomic_file.h"
 #include "io/json_document.h"
+#include "mesh/cloth_model.h"
 #include "percale/fabrics.h"
+#include "percale/mesh_file.h"
 #include "percale/parameters.h"
 
 namespace percale {
@@ -33,6 +36,25 @@ std::vector<std::string_view> SplitPath(std::string_view path) {
     path = end == std::string_view::npos ? std::string_view() : path.substr(end);
   }
   return parts;
+}
+
+/// The file of a cloth's mesh, whose path begins at the folder of the scene's file.
+std::filesystem::path MeshFile(const Scene& scene, const ClothSettings& cloth) {
+  return TextPath(scene.name).parent_path() / TextPath(cloth.mesh);
+}
+
+/// Whether the cloth has a mesh to read, and does not hold it yet.
+bool LacksMesh(const ClothSettings& cloth) {
+  if (cloth.shape != Shape::Mesh || cloth.mesh.empty()) return false;
+  return !cloth.loaded || cloth.loaded->file != cloth.mesh || cloth.loaded->options != MeshOptionsOf(cloth);
+}
+
+Status ReadMesh(const Scene& scene, ClothSettings& cloth) {
+  const MeshOptions options = MeshOptionsOf(cloth);
+  Result<RestMesh> mesh = LoadMesh(MeshFile(scene, cloth), options);
+  if (!mesh) return mesh.diagnostics();
+  cloth.loaded = std::make_shared<const LoadedMesh>(LoadedMesh{cloth.mesh, options, std::move(*mesh)});
+  return {std::monostate{}, mesh.diagnostics()};
 }
 
 /// Turns a document into a scene and collects everything that is wrong with it.
@@ -62,12 +84,15 @@ class SceneReader {
       ReadGroup(*group, member);
     }
     scene_.planesFirst = plane != 0 && sphere != 0 && plane < sphere;
+    if (scene_.simulation.engine == Engine::Fabric) ReadMeshes();
     CheckWhole();
     return Finish();
   }
 
  private:
   static constexpr JsonIndex kRoot = 0;
+  static constexpr const char* kMeshKeys[] = {"shape",         "mesh", "mesh_scale",   "rest_shape",
+                                              "metres_per_uv", "weld", "weld_distance"};
 
   void Error(JsonIndex value, const std::string& message) { Report(value, Severity::Error, message); }
 
@@ -91,6 +116,25 @@ class SceneReader {
     if (stated == 0 || document_.Kind(stated) != JsonKind::Text) return;
     const Value value = document_.Text(stated);
     if (!CheckValue(engine, value)) Choose(engine, scene_, 0, value);
+  }
+
+  /// What is wrong with a mesh is told at its own place, and follows the messages of the scene.
+  void ReadMeshes() {
+    for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
+      ClothSettings& cloth = scene_.cloths[c];
+      const std::string index = std::to_string(c);
+      const bool known = std::none_of(std::begin(kMeshKeys), std::end(kMeshKeys), [&](const char* key) {
+        return failed_.count("/cloth/" + index + "/" + key) > 0;
+      });
+      if (!known || !LacksMesh(cloth)) continue;
+      const Status read = ReadMesh(scene_, cloth);
+      meshMessages_.insert(meshMessages_.end(), read.diagnostics().begin(), read.diagnostics().end());
+      if (read) continue;
+      const std::string_view parts[] = {"cloth", index, "mesh"};
+      auto [value, path] = Locate({std::begin(parts), std::end(parts)});
+      Error(value, path + ": " + Quote(cloth.mesh, 80) + " cannot be used; what is wrong with it follows");
+      failed_.insert("/cloth/" + index + "/mesh");
+    }
   }
 
   void ReadGroup(const ParameterGroup& group, JsonIndex value) {
@@ -207,11 +251,17 @@ class SceneReader {
     const std::vector<JsonIndex> elements = document_.Children(value);
     for (std::size_t k = 0; k < elements.size(); ++k) {
       const std::string place = path + "/" + std::to_string(k);
+      if (document_.Kind(elements[k]) == JsonKind::Number) {
+        double vertex = 0;
+        good = ReadWhole(elements[k], place, vertex) && good;
+        if (good) points.push_back({static_cast<int>(vertex), 0});
+        continue;
+      }
       const bool isArray = document_.Kind(elements[k]) == JsonKind::Array;
       const std::vector<JsonIndex> ij = document_.Children(elements[k]);
       if (!isArray || ij.size() != 2) {
-        Error(elements[k],
-              place + ": expected a point [i, j], two whole numbers, got " + document_.Source(elements[k]));
+        Error(elements[k], place + ": expected a point [i, j], two whole numbers, or the number of a vertex, got " +
+                               document_.Source(elements[k]));
         good = false;
         continue;
       }
@@ -294,10 +344,14 @@ class SceneReader {
         FindGroup(parts[0])->isArray && parts.size() > 1 ? group + "/" + std::string(parts[1]) : group;
     if (failed_.count(group) > 0 || failed_.count(path) > 0) return true;
     if (severity != Severity::Error) return FailedBelow(object) || FailedBelow("/simulation");
-    if (group == "/pin_motion") return FailedBelow(object) || FailedBelow("/cloth");
+    if (group == "/pin_motion" || group == "/patch") return FailedBelow(object) || FailedBelow("/cloth");
     if (group != "/cloth") return false;
-    for (const char* name : {"/width", "/height", "/num_width_points", "/num_height_points", "/pinned"}) {
+    for (const char* name :
+         {"/width", "/height", "/num_width_points", "/num_height_points", "/pinned", "/radius", "/rings"}) {
       if (failed_.count(object + name) > 0) return true;
+    }
+    for (const char* name : kMeshKeys) {
+      if (failed_.count(object + "/" + name) > 0) return true;
     }
     return failed_.count(object) > 0;
   }
@@ -343,6 +397,7 @@ class SceneReader {
       rest.place.file = scene_.name;
       rest.message = "and " + std::to_string(dropped_) + " more problems";
     }
+    diagnostics_.insert(diagnostics_.end(), meshMessages_.begin(), meshMessages_.end());
     if (hasErrors_) return std::move(diagnostics_);
     return {std::move(scene_), std::move(diagnostics_)};
   }
@@ -352,7 +407,7 @@ class SceneReader {
   Scene scene_;
   std::set<std::string> failed_;  ///< Canonical paths of values that are missing, unknown or wrong.
   std::map<JsonIndex, std::vector<JsonIndex>> children_;  ///< Of arrays that messages pointed into.
-  Diagnostics diagnostics_;
+  Diagnostics diagnostics_, meshMessages_;
   bool hasErrors_ = false;
   std::size_t dropped_ = 0;  ///< Messages beyond those kept.
 };
@@ -387,14 +442,15 @@ std::string TypeSchema(const Parameter& p) {
       return out + "]";
     }
     case ValueKind::Text:
-      return "\"type\": \"string\", \"minLength\": 1";
+      return std::string("\"type\": \"string\"") +
+             (DefaultValue(p) == Value(std::string()) ? "" : ", \"minLength\": 1");
     case ValueKind::Vector:
       return "\"type\": \"array\", \"items\": {\"type\": \"number\"" + Range(p) + "}, \"minItems\": 3, \"maxItems\": 3";
     case ValueKind::GridPoints:
       break;
   }
-  return "\"type\": \"array\", \"items\": {\"type\": \"array\", \"items\": {\"type\": \"integer\", \"minimum\": 0}, "
-         "\"minItems\": 2, \"maxItems\": 2}";
+  return "\"type\": \"array\", \"items\": {\"anyOf\": [{\"type\": \"array\", \"items\": {\"type\": \"integer\", "
+         "\"minimum\": 0}, \"minItems\": 2, \"maxItems\": 2}, {\"type\": \"integer\", \"minimum\": 0}]}";
 }
 
 std::string GroupSchema(const ParameterGroup& group) {
@@ -432,6 +488,33 @@ Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins) {
 
 Result<Scene> ParseScene(const std::string& text, const std::string& name, Origins* origins) {
   return ReadScene(JsonDocument::Parse(text, name), name, origins);
+}
+
+Status LoadMeshes(Scene& scene) {
+  Diagnostics warnings;
+  if (scene.simulation.engine != Engine::Fabric) return Ok();
+  for (ClothSettings& cloth : scene.cloths) {
+    if (!LacksMesh(cloth)) continue;
+    const Status read = ReadMesh(scene, cloth);
+    if (!read) return read.diagnostics();
+    warnings.insert(warnings.end(), read.diagnostics().begin(), read.diagnostics().end());
+  }
+  return {std::monostate{}, std::move(warnings)};
+}
+
+Scene WithAbsolutePaths(Scene scene) {
+  for (ClothSettings& cloth : scene.cloths) {
+    if (cloth.mesh.empty()) continue;
+    std::error_code error;
+    const std::filesystem::path file = std::filesystem::absolute(MeshFile(scene, cloth), error).lexically_normal();
+    if (error) continue;
+    cloth.mesh = PathText(file);
+    if (!cloth.loaded) continue;
+    LoadedMesh loaded = *cloth.loaded;
+    loaded.file = cloth.mesh;
+    cloth.loaded = std::make_shared<const LoadedMesh>(std::move(loaded));
+  }
+  return scene;
 }
 
 std::string FormatScene(const Scene& scene) {

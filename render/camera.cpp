@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "mesh/cloth_model.h"
+#include "mesh/rest_mesh.h"
 
 namespace percale {
 namespace {
@@ -31,20 +32,24 @@ OrbitCamera OrbitCamera::ForScene(const Scene& scene) {
   OrbitCamera camera;
   Vec3 sum, low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   double count = 0, extent = 0;
+  bool allGrids = true;
   for (const ClothSettings& cloth : scene.cloths) {
-    for (const Vec3& x : MakeGrid(cloth).start) {
+    const bool grid = cloth.shape == Shape::Grid && cloth.rotation == Vec3{};
+    allGrids = allGrids && grid;
+    for (const Vec3& x : grid ? MakeGrid(cloth).start : MakeClothMesh(cloth).positions) {
       sum += x;
       count += 1;
       low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
       high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
     }
-    extent = std::max({extent, cloth.width, cloth.height});
+    extent = std::max(extent, SizeOf(cloth).extent);
   }
   if (count > 0) {
     // One cloth: its own extent, which its box can exceed by rounding only.
     if (scene.cloths.size() > 1) extent = std::max({extent, high.x - low.x, high.y - low.y, high.z - low.z});
     camera.extent_ = extent;
-    camera.target_ = {sum.x / count, sum.y / count / 2, sum.z / count};
+    // The course looks at half of a sheet's height, where the sheet will hang.
+    camera.target_ = allGrids ? Vec3{sum.x / count, sum.y / count / 2, sum.z / count} : 0.5 * (low + high);
     camera.distance_ = kStartDistance * extent;
   }
   if (!scene.camera.automatic) {

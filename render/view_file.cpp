@@ -150,8 +150,9 @@ std::vector<PngText> DescribePicture(const Scene& scene, const View& view, int f
   Scene seen = scene;
   seen.look = view.look;
   seen.camera = view.camera.Settings();
-  std::vector<PngText> texts = {
-      {kScene, FormatScene(seen)}, {kView, FormatView(view)}, {kFrame, std::to_string(frame)}};
+  std::vector<PngText> texts = {{kScene, FormatScene(WithAbsolutePaths(std::move(seen)))},
+                                {kView, FormatView(view)},
+                                {kFrame, std::to_string(frame)}};
   // Texts of a PNG hold no zeros. The file compresses base64 back to the size of the bytes.
   if (state && state->Bytes() <= kMostStateInPicture) texts.push_back({kState, ToBase64(FormatCheckpoint(*state))});
   return texts;

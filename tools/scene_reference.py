@@ -47,8 +47,8 @@ def kind(schema, node):
     name = node.get("type")
     if name == "array":
         items = resolve(schema, node.get("items", {}))
-        if items.get("type") == "array":
-            return "points [i, j]"
+        if "anyOf" in items:
+            return "points [i, j], vertices"
         return "three numbers" + bounds(items)
     words = {"number": "number", "integer": "whole number", "boolean": "true, false", "string": "text"}
     return words[name] + bounds(node)

@@ -9,6 +9,8 @@
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "io/cache_kind.h"
+#include "mesh/cloth_model.h"
+#include "mesh/rest_mesh.h"
 #include "percale/mesh_file.h"
 #include "world/limits.h"
 
@@ -22,6 +24,32 @@ constexpr double kBytesPerPoint = 560;
 
 std::string Short(double number) {
   return std::isinf(number) ? "unlimited" : Text("%.4g", number);
+}
+
+void PrintFabricCloth(const ClothSettings& cloth, std::size_t index) {
+  const ClothSize size = SizeOf(cloth);
+  const RestMesh mesh = MakeClothMesh(cloth);
+  std::printf("cloth %zu\n", index);
+  if (cloth.shape == Shape::Grid) {
+    std::printf("  shape            grid, %s x %s m, %d x %d points\n", Short(cloth.width).c_str(),
+                Short(cloth.height).c_str(), cloth.numWidthPoints, cloth.numHeightPoints);
+  } else if (cloth.shape == Shape::Disc) {
+    std::printf("  shape            disc, radius %s m, %d rings\n", Short(cloth.radius).c_str(), cloth.rings);
+  } else {
+    std::printf("  shape            mesh %s\n", cloth.mesh.c_str());
+    for (const VertexGroup& group : mesh.groups)
+      std::printf("  group            %s, %zu vertices\n", group.name.c_str(), group.vertices.size());
+  }
+  std::printf("  points           %zu, %zu pinned\n", mesh.positions.size(), PinnedVertices(cloth).size());
+  std::printf("  spacing          about %s m\n", Short(size.spacing).c_str());
+  std::printf("  triangles        %zu\n", mesh.triangles.size());
+  std::printf("  area             %s m^2 at rest\n", Short(size.area).c_str());
+  std::printf("  mass             %s kg, %s kg/m^2\n", Short(size.area * cloth.density).c_str(),
+              Short(cloth.density).c_str());
+  std::printf("  stretch          %s N/m warp, %s N/m weft, shear %s N/m\n", Short(cloth.stretchWarp).c_str(),
+              Short(cloth.stretchWeft).c_str(), Short(cloth.shear).c_str());
+  std::printf("  bend             %s N m warp, %s N m weft\n", Short(cloth.bendWarp).c_str(),
+              Short(cloth.bendWeft).c_str());
 }
 
 void PrintCloth(const ClothSettings& cloth, std::size_t index, double timeStep) {
@@ -75,17 +103,26 @@ void PrintState(const Options& options, const Session& session) {
 void PrintScene(const Options& options, const Session& session) {
   const Scene& scene = session.scene;
   double points = 0;
-  for (const ClothSettings& cloth : scene.cloths) points += double(cloth.numWidthPoints) * cloth.numHeightPoints;
+  const bool fabric = scene.simulation.engine == Engine::Fabric;
+  for (const ClothSettings& cloth : scene.cloths) points += double(VertexCount(cloth));
   const char* const kind = session.view ? "picture" : session.state ? "checkpoint" : "scene";
   std::printf("%s: %s\n", PathText(session.file).c_str(), kind);
   if (session.view || session.state) PrintState(options, session);
   std::printf("time step          1/%lld s (%d frames per second, %d steps each)\n",
               static_cast<long long>(scene.simulation.framesPerSecond) * scene.simulation.stepsPerFrame,
               scene.simulation.framesPerSecond, scene.simulation.stepsPerFrame);
-  for (std::size_t i = 0; i < scene.cloths.size(); ++i) PrintCloth(scene.cloths[i], i, scene.TimeStep());
+  for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
+    if (fabric)
+      PrintFabricCloth(scene.cloths[i], i);
+    else
+      PrintCloth(scene.cloths[i], i, scene.TimeStep());
+  }
+  if (!scene.patches.empty()) std::printf("patches            %zu\n", scene.patches.size());
   std::printf("colliders          %zu spheres, %zu planes\n", scene.spheres.size(), scene.planes.size());
   std::printf("pin motions        %zu\n", scene.pinMotions.size());
-  std::printf("wind               %s\n", scene.wind.drag > 0 ? "yes" : "no");
+  std::printf(
+      "wind               %s\n",
+      (fabric ? scene.wind.airDensity > 0 && scene.wind.velocity != Vec3{} : scene.wind.drag > 0) ? "yes" : "no");
   std::printf("points in all      %.0f\n", points);
   std::printf("memory             about %s\n", Megabytes(points * kBytesPerPoint).c_str());
 }

@@ -66,7 +66,9 @@ std::vector<double> MeasureFrame(const World& world) {
           report.kineticEnergy,
           report.greatestMove,
           double(report.atRest),
-          Folding(world.Cloth(0).positions(), cloth.numWidthPoints, cloth.numHeightPoints)};
+          cloth.shape == percale::Shape::Grid
+              ? Folding(world.Cloth(0).positions(), cloth.numWidthPoints, cloth.numHeightPoints)
+              : 0};
 }
 
 std::vector<std::string> Cells(const std::string& line) {

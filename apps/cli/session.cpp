@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "percale/parameters.h"
+#include "percale/scene_file.h"
 #include "render/camera.h"
 #include "render/view_file.h"
 
@@ -195,6 +196,10 @@ std::variant<Session, int> OpenSession(const Options& options) {
     session.assignments["/look/shader"] = "--shader " + ShellWord(options.shader);
   }
   if (!options.set.empty() || !options.presets.empty()) {
+    if (const Status loaded = LoadMeshes(session.scene); !loaded) {
+      PrintDiagnostics(loaded.diagnostics());
+      return kInvalid;
+    }
     // What the file's warnings said may no longer hold.
     warnings = CheckScene(session.scene);
     for (Diagnostic& warning : warnings) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/cloth_model.h"
+
 namespace percale::viewer {
 namespace {
 
@@ -18,18 +20,18 @@ constexpr double kGustSpeed = 8, kGustPush = 30, kGustDuration = 0.8, kLeastDrag
 }  // namespace
 
 Handle GripOf(const Scene& scene, int index, int vertex, const Vec3& at) {
-  const ClothSettings& cloth = scene.cloths[static_cast<std::size_t>(index)];
-  const double spacing = std::max(cloth.width / (cloth.numWidthPoints - 1), cloth.height / (cloth.numHeightPoints - 1));
+  const ClothSize size = SizeOf(scene.cloths[static_cast<std::size_t>(index)]);
   Handle handle{.cloth = index, .vertex = vertex, .target = at};
-  handle.radius = std::max(kGripShare * std::max(cloth.width, cloth.height), kGripSpacings * spacing);
+  handle.radius = std::max(kGripShare * size.extent, kGripSpacings * size.spacing);
   return handle;
 }
 
 Ball BallFrom(const Scene& scene, const Vec3& point, const Vec3& direction) {
   double extent = 0, mass = 0;
   for (const ClothSettings& cloth : scene.cloths) {
-    extent = std::max({extent, cloth.width, cloth.height});
-    mass += cloth.width * cloth.height * cloth.density;
+    const ClothSize size = SizeOf(cloth);
+    extent = std::max(extent, size.extent);
+    mass += size.area * cloth.density;
   }
   const Vec3 ahead = UnitOr(direction, {0, 0, -1});
   Ball ball;

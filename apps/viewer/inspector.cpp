@@ -11,6 +11,7 @@
 #include "apps/viewer/session.h"
 #include "apps/viewer/ui_state.h"
 #include "apps/viewer/widgets.h"
+#include "mesh/cloth_model.h"
 #include "mesh/pick.h"
 #include "world/measure.h"
 
@@ -60,7 +61,11 @@ void Facts(const Session& session, const UiState& state, const VertexRef& ref) {
   const Vec3& at = cloth.positions[Index(ref.vertex)];
   const auto fact = [&](const char* label, const std::string& value) { FactRow(state, label, value); };
   fact("Vertex", Text("%d of cloth %d", ref.vertex, ref.cloth));
-  fact("Grid", Text("i %d, j %d", ref.vertex % settings.numWidthPoints, ref.vertex / settings.numWidthPoints));
+  const GridPoint point = PointOf(settings, ref.vertex);
+  if (settings.shape == Shape::Grid)
+    fact("Grid", Text("i %d, j %d", point.i, point.j));
+  else if (settings.shape == Shape::Mesh)
+    fact("In the file", Text("%d, from 0", point.i));
   fact("Position", Text("%.4f, %.4f, %.4f m", at.x, at.y, at.z));
   fact("Speed", Text("%.4g m/s", Length(cloth.velocities[Index(ref.vertex)])));
 

@@ -53,8 +53,11 @@ void DrawClothChoice(Session& session, UiState& state) {
   const auto name = [&](int cloth) {
     if (cloth == Session::kAll) return "all " + std::to_string(count) + " cloths";
     const ClothSettings& c = session.scene().cloths[static_cast<std::size_t>(cloth)];
-    return "cloth " + std::to_string(cloth) + " (" + std::to_string(c.numWidthPoints) + " x " +
-           std::to_string(c.numHeightPoints) + ")";
+    const std::string shape = c.shape == Shape::Grid
+                                  ? std::to_string(c.numWidthPoints) + " x " + std::to_string(c.numHeightPoints)
+                              : c.shape == Shape::Disc ? "disc"
+                                                       : c.mesh;
+    return "cloth " + std::to_string(cloth) + " (" + shape + ")";
   };
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Settings of");

@@ -188,6 +188,7 @@ class Player {
     for (char& c : path) c = c == '/' ? '.' : c;
     const auto applied = ApplyAssignment(*scene_, path + "=" + line.Source("value"));
     if (!applied) line.Fail(applied.diagnostics());
+    if (const Status loaded = LoadMeshes(*scene_); !loaded) line.Fail(loaded.diagnostics());
     if (const Diagnostics problems = CheckScene(*scene_); HasErrors(problems)) line.Fail(problems);
   }
 

@@ -8,6 +8,7 @@
 
 #include "io/atomic_file.h"
 #include "percale/parameters.h"
+#include "percale/scene_file.h"
 #include "render/view_file.h"
 
 namespace percale::viewer {
@@ -59,6 +60,7 @@ Result<SceneReading> SceneSource::Read(const fs::path& file) const {
   reading.statesShader = opened->view || opened->state || opened->origins.count("/look/shader") > 0;
   Diagnostics problems;
   if (file == options_.sceneFile) problems = ApplyOptions(options_, *opened, reading.scene);
+  if (const Status loaded = LoadMeshes(reading.scene); !loaded) return loaded.diagnostics();
   const Diagnostics checked = CheckScene(reading.scene);
   if (HasErrors(checked)) return checked;
   // What CheckScene warns of is told as a property of the settings, which sliders can mend. The loader

@@ -6,6 +6,7 @@
 
 #include "apps/viewer/hand_tools.h"
 #include "io/atomic_file.h"
+#include "mesh/cloth_model.h"
 
 namespace percale::viewer {
 namespace {
@@ -135,8 +136,21 @@ std::uint64_t Session::SendHandles(bool undoable) {
 
 void Session::TogglePin(int cloth, int vertex) {
   const ClothSettings& sheet = scene_.cloths[static_cast<std::size_t>(cloth)];
-  const GridPoint point{vertex % sheet.numWidthPoints, vertex / sheet.numWidthPoints};
+  const GridPoint point = PointOf(sheet, vertex);
   std::vector<GridPoint> pinned = sheet.pinned;
+  if (const VertexGroup* const group = FindVertexGroup(sheet, sheet.pinnedGroup);
+      group && std::binary_search(group->vertices.begin(), group->vertices.end(), vertex)) {
+    // To free one of a group, the others are named one by one.
+    Scene changed = scene_;
+    ClothSettings& named = changed.cloths[static_cast<std::size_t>(cloth)];
+    named.pinned.clear();
+    named.pinnedGroup.clear();
+    for (const std::int32_t v : PinnedVertices(sheet)) {
+      if (v != vertex) named.pinned.push_back(PointOf(sheet, v));
+    }
+    SetScene("Pinned points", std::move(changed));
+    return;
+  }
   if (std::erase(pinned, point) == 0) pinned.push_back(point);
   SetParameter(*FindParameter("cloth", "pinned"), cloth, pinned);
 }
@@ -185,6 +199,7 @@ void Session::Refuse(const Parameter& parameter, int index, const std::string& w
 Status Session::ChangeSettings(const std::string& label, const std::string& path, Scene settings) {
   const std::optional<Effect> effect = EffectOf(scene_, settings);
   if (!effect) return Ok();
+  if (const Status loaded = LoadMeshes(settings); !loaded) return loaded;
   if (const Diagnostics checked = CheckScene(settings); HasErrors(checked)) return checked;
   const bool merges = undo_.Merges(path);
   // Of changes that are merged, the state before the first leads back.

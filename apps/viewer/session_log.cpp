@@ -44,7 +44,7 @@ LogLine& LogLine::Vector(std::string_view key, const Vec3& v) {
 }
 
 LogLine& LogLine::Config(const Scene& scene) {
-  return Text("config", FormatScene(scene));
+  return Text("config", FormatScene(WithAbsolutePaths(scene)));
 }
 
 LogLine DescribeCommand(const Command& command) {

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,23 +13,6 @@
 #include "percale/world.h"
 
 namespace percale {
-
-/// What a mesh is like when nothing pulls at it.
-enum class RestShape {
-  Space,    ///< As its vertices lie: the file shows the cloth at rest.
-  Texture,  ///< As its texture coordinates lie: the file shows worn cloth, and its texture the flat panels.
-};
-
-/// How the file of a mesh is to be understood.
-struct MeshOptions {
-  double scale = 1;                         ///< Metres per unit of the file, > 0.
-  RestShape rest = RestShape::Space;        ///< Where the rest shape comes from.
-  double metresPerUv = 1;                   ///< Size of the texture, when it is the rest shape [m], > 0.
-  std::optional<Vec3> warp = std::nullopt;  ///< Direction of the warp in space, of any length but 0, for triangles
-                                            ///< without texture coordinates; without it, that of their first edge.
-  bool weld = false;                        ///< Vertices that lie together become one, which closes seams.
-  double weldDistance = 0;                  ///< Farthest that they lie apart [m]: 0, for the same place, or >= 1e-9.
-};
 
 /// Reads a mesh by the extension of `file`:
 ///   .obj  Wavefront: v, vt, f; g and o become groups of vertices

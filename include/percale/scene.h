@@ -4,14 +4,17 @@
 /// stand beside it; the same facts for programs are in percale/parameters.h.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "percale/rest_mesh.h"
 #include "percale/vec3.h"
 
 namespace percale {
 
-/// A point of a cloth's grid: column i along the width, row j along the height.
+/// A point of a cloth's grid: column i along the width, row j along the height. Of a cloth that is no grid: vertex i,
+/// and j is 0; vertices of a mesh are counted as in its file, from 0.
 struct GridPoint {
   int i = 0, j = 0;
   friend bool operator==(const GridPoint&, const GridPoint&) = default;
@@ -19,6 +22,8 @@ struct GridPoint {
 
 /// How cloth is computed: as masses and springs, or as a continuum of measured stiffness.
 enum class Engine { Springs, Fabric };
+/// What a cloth is cut as. Engine::Springs knows grids only.
+enum class Shape { Grid, Disc, Mesh };
 enum class Orientation { Horizontal = 0, Vertical = 1 };
 /// How a point's box becomes a bucket of the spatial map. The course's write-up proposes `Linear`
 /// (7x + 5y + 3z) and `Powers` (x^6 + y^4 + z^2), which let boxes share a bucket; `Exact` keeps one
@@ -38,14 +43,16 @@ enum class MembraneLaw { StVenantKirchhoff, NeoHookean };
 enum class BendingLaw { Quadratic, Hinges };
 
 struct ClothSettings {
+  Shape shape = Shape::Grid;
   double width = 1;                                   ///< Extent [m], > 0.
   double height = 1;                                  ///< Extent [m], > 0.
   int numWidthPoints = 50;                            ///< Grid points along the width, >= 2.
   int numHeightPoints = 50;                           ///< Grid points along the height, >= 2.
   double thickness = 0.0095;                          ///< Points of cloth keep 2 * thickness apart [m], >= 0.
-  Orientation orientation = Orientation::Horizontal;  ///< Lies at y = 1 over x, z; or stands in x, y.
+  Orientation orientation = Orientation::Horizontal;  ///< Lies at y = 1 over x, z; or stands in x, y. Not of a mesh.
   Vec3 origin;                                        ///< Moves the whole sheet [m].
   std::vector<GridPoint> pinned;                      ///< Immovable points.
+  std::string pinnedGroup;                            ///< More of them: all vertices of this group of the mesh.
   bool enableStructural = true;                       ///< Springs to the left and upper neighbours.
   bool enableShearing = true;                         ///< Springs to the upper left and upper right neighbours.
   bool enableBending = true;                          ///< Springs to the second neighbours left and up.
@@ -55,6 +62,16 @@ struct ClothSettings {
   int seed = 184;                                     ///< Of the vertical sheet's random z.
 
   // The continuum: Engine::Fabric.
+  double radius = 0.5;                       ///< Of a disc [m], > 0.
+  int rings = 30;                            ///< Of a disc's triangles, >= 1.
+  std::string mesh;                          ///< File of a mesh; the path begins at the folder of the scene's file.
+  double meshScale = 1;                      ///< Metres per unit of that file, > 0.
+  RestShape restShape = RestShape::Space;    ///< Where the mesh has its shape at rest.
+  double metresPerUv = 1;                    ///< Size of its texture [m], > 0.
+  bool weld = false;                         ///< Vertices that lie together become one, which closes seams.
+  double weldDistance = 0;                   ///< Farthest that they lie apart [m]; 0, or >= 1e-9.
+  std::shared_ptr<const LoadedMesh> loaded;  ///< That file, read: see LoadMeshes in percale/scene_file.h.
+  Vec3 rotation;                   ///< Turns it about x, then y, then z, around the middle of its box [degree].
   Fabric fabric = Fabric::Cotton;  ///< What the constants below came from; any of them may differ.
   double stretchWarp = 261;        ///< Force per width and strain along the warp, u [N/m], > 0.
   double stretchWeft = 261;        ///< The same along the weft, v [N/m], > 0.
@@ -84,6 +101,17 @@ struct PlaneSettings {
   Vec3 point;             ///< Any point of the plane [m].
   Vec3 normal{0, 1, 0};   ///< Not zero; need not have length 1.
   double friction = 0.5;  ///< Share of the correction that is withheld, 0..1.
+};
+
+/// A part of one cloth whose material differs: its triangles with all corners in `group` and in `rectangle`. Several
+/// patches of a triangle multiply.
+struct Patch {
+  int cloth = 0;                     ///< Index of the cloth in the scene.
+  std::string group;                 ///< Vertices of the mesh; empty: all of the cloth's.
+  std::vector<GridPoint> rectangle;  ///< Two opposite corners of a part of the grid; none: all of it.
+  double stretch = 1;                ///< Times stretchWarp, stretchWeft and shear, > 0.
+  double bend = 1;                   ///< Times bendWarp and bendWeft, >= 0.
+  double density = 1;                ///< Times the density, > 0.
 };
 
 /// Carries some pins of one cloth along a straight line: at rest before `start`, displaced by
@@ -146,6 +174,7 @@ struct Scene {
   std::vector<ClothSettings> cloths;
   std::vector<SphereSettings> spheres;
   std::vector<PlaneSettings> planes;
+  std::vector<Patch> patches;
   std::vector<PinMotion> pinMotions;
   WindSettings wind;
   CameraSettings camera;

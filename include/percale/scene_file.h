@@ -15,12 +15,19 @@ namespace percale {
 /// in the map has its default.
 using Origins = std::map<std::string, Place>;
 
-/// Reads a scene file. On failure every problem of the file, each with its place; never throws for
-/// bad input. `origins`, if given, is filled with the place of each value that the file states.
+/// Reads a scene file, and the meshes that it names. On failure every problem of the file, each with its place; never
+/// throws for bad input. `origins`, if given, is filled with the place of each value that the file states.
 Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins = nullptr);
 
 /// The same for a text in memory; `name` stands for the file in messages.
 Result<Scene> ParseScene(const std::string& text, const std::string& name, Origins* origins = nullptr);
+
+/// Reads the meshes that the cloths of shape Shape::Mesh name and do not hold yet with these settings; a path that is
+/// not absolute begins at the folder of `scene.name`. Changed settings need it before CheckScene accepts them.
+Status LoadMeshes(Scene& scene);
+
+/// The scene with the paths of its meshes absolute, for a text that is kept elsewhere.
+Scene WithAbsolutePaths(Scene scene);
 
 /// The scene as JSON text that `ParseScene` reads back to the same scene; states every parameter.
 std::string FormatScene(const Scene& scene);

@@ -79,8 +79,11 @@ class ClothView {
   std::span<const Vec3> rest() const { return rest_; }                ///< The rest shape, where it started [m].
   std::span<const Vec2> uv() const { return uv_; }                    ///< 0..1, one per vertex.
   std::span<const Triangle> triangles() const { return triangles_; }  ///< Vertex indices.
-  std::span<const Edge> springs() const { return springs_; }          ///< Of the enabled kinds, in creation order.
-  std::span<const std::int32_t> pinned() const { return pinned_; }    ///< Vertex indices, ascending.
+  std::span<const Edge> springs() const {
+    return springs_;
+  }                                                                 ///< Of the enabled kinds, in creation order;
+                                                                    ///< Engine::Fabric: edges of triangles.
+  std::span<const std::int32_t> pinned() const { return pinned_; }  ///< Vertex indices, ascending.
 
  private:
   friend class World;

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "mesh/cloth_model.h"
 #include "mesh/topology.h"
 
 namespace percale::fabric {
@@ -40,12 +41,10 @@ void Append(const RestMesh& mesh, double warpAngle, FabricModel& model) {
   const int first = model.vertexCount;
   model.firstVertex.push_back(first);
   model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
-  const auto cloth = static_cast<std::int32_t>(model.firstVertex.size() - 1);
   model.vertexCount += static_cast<int>(mesh.positions.size());
   model.start.insert(model.start.end(), mesh.positions.begin(), mesh.positions.end());
   for (const Triangle& t : mesh.triangles) {
     model.triangles.push_back({t.a + first, t.b + first, t.c + first});
-    model.clothOf.push_back(cloth);
   }
   for (const Vec2& p : mesh.material) model.material.push_back(AlongWarp(p, warpAngle));
 }
@@ -186,6 +185,61 @@ void FindChart(FabricModel& model) {
   }
 }
 
+/// Which vertices of its cloth a patch holds, one byte each.
+std::vector<std::uint8_t> VerticesOf(const Patch& patch, const ClothSettings& cloth, std::size_t count) {
+  std::vector<std::uint8_t> in(count, 1);
+  if (!patch.group.empty()) {
+    in.assign(count, 0);
+    if (const VertexGroup* const group = FindVertexGroup(cloth, patch.group)) {
+      for (const std::int32_t v : group->vertices) in[Index(v)] = 1;
+    }
+  }
+  if (patch.rectangle.size() == 2) {
+    const GridPoint &a = patch.rectangle[0], &b = patch.rectangle[1];
+    for (std::size_t v = 0; v < count; ++v) {
+      const GridPoint p = PointOf(cloth, static_cast<std::int32_t>(v));
+      const bool inside = p.i >= std::min(a.i, b.i) && p.i <= std::max(a.i, b.i) && p.j >= std::min(a.j, b.j) &&
+                          p.j <= std::max(a.j, b.j);
+      in[v] = in[v] && inside;
+    }
+  }
+  return in;
+}
+
+/// The materials of a scene: those of its cloths, then one for each set of patches that meet on a triangle. Sets each
+/// triangle's number in `model`.
+std::vector<ClothSettings> FindMaterials(const Scene& scene, FabricModel& model) {
+  std::vector<ClothSettings> materials = scene.cloths;
+  model.clothOf.resize(model.triangles.size());
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const auto begin = model.clothOf.begin() + model.firstTriangle[c],
+               end = model.clothOf.begin() + model.firstTriangle[c + 1];
+    std::fill(begin, end, static_cast<std::int32_t>(c));
+  }
+  for (const Patch& patch : scene.patches) {
+    const auto c = Index(patch.cloth);
+    const int first = model.firstVertex[c];
+    const std::vector<std::uint8_t> in = VerticesOf(patch, scene.cloths[c], Index(model.firstVertex[c + 1] - first));
+    // The material that each of those before becomes in this patch, once one of its triangles lies there.
+    std::vector<std::int32_t> within(materials.size(), -1);
+    for (std::size_t t = Index(model.firstTriangle[c]); t < Index(model.firstTriangle[c + 1]); ++t) {
+      const Triangle& corners = model.triangles[t];
+      if (!in[Index(corners.a - first)] || !in[Index(corners.b - first)] || !in[Index(corners.c - first)]) continue;
+      std::int32_t& number = within[Index(model.clothOf[t])];
+      if (number < 0) {
+        number = static_cast<std::int32_t>(materials.size());
+        ClothSettings material = materials[Index(model.clothOf[t])];
+        material.stretchWarp *= patch.stretch, material.stretchWeft *= patch.stretch, material.shear *= patch.stretch;
+        material.bendWarp *= patch.bend, material.bendWeft *= patch.bend;
+        material.density *= patch.density;
+        materials.push_back(std::move(material));
+      }
+      model.clothOf[t] = number;
+    }
+  }
+  return materials;
+}
+
 }  // namespace
 
 FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes) {
@@ -217,7 +271,8 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   model.bendDamping.clear();
   model.anyHinges = false;
   model.plate.clear();
-  for (const ClothSettings& cloth : scene.cloths) {
+  const std::vector<ClothSettings> materials = FindMaterials(scene, model);
+  for (const ClothSettings& cloth : materials) {
     Membrane membrane;
     membrane.kind = cloth.membraneLaw;
     membrane.damping = cloth.stretchDamping;
@@ -231,9 +286,11 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     model.membranes.push_back(membrane);
     model.pressure.push_back(cloth.pressure);
     model.bendDamping.push_back(cloth.bendDamping);
-    const bool plate = cloth.bendingLaw == BendingLaw::Quadratic;
+  }
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const bool plate = scene.cloths[c].bendingLaw == BendingLaw::Quadratic;
     model.anyHinges = model.anyHinges || !plate;
-    model.plate.resize(Index(model.firstVertex[model.membranes.size()]), plate ? 1 : 0);
+    model.plate.resize(Index(model.firstVertex[c + 1]), plate ? 1 : 0);
   }
 
   model.mass.assign(Index(model.vertexCount), 0);
@@ -241,7 +298,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& triangle = model.triangles[t];
     const std::int32_t corners[3] = {triangle.a, triangle.b, triangle.c};
-    const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
+    const ClothSettings& cloth = materials[Index(model.clothOf[t])];
     for (const std::int32_t v : corners) model.mass[Index(v)] += cloth.density * model.rest[t].area / 3;
 
     const double mixed = std::sqrt(cloth.bendWarp * cloth.bendWeft);
@@ -271,7 +328,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   model.buckling.assign(model.triangles.size(), 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& tri = model.triangles[t];
-    const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
+    const ClothSettings& cloth = materials[Index(model.clothOf[t])];
     const double mass = model.mass[Index(tri.a)] + model.mass[Index(tri.b)] + model.mass[Index(tri.c)];
     const double area = model.rest[t].area;
     if (area > 0) model.buckling[t] = 2 * std::sqrt(std::sqrt(cloth.bendWarp * cloth.bendWeft) * mass / (6 * area));

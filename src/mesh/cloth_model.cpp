@@ -1,8 +1,12 @@
 #include "mesh/cloth_model.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
 
 #include "math/splitmix64.h"
+#include "mesh/rest_mesh.h"
 
 namespace percale {
 
@@ -38,9 +42,91 @@ ClothModel MakeGrid(const ClothSettings& settings) {
   return model;
 }
 
+std::int64_t VertexCount(const ClothSettings& settings) {
+  switch (settings.shape) {
+    case Shape::Grid:
+      return std::int64_t{settings.numWidthPoints} * settings.numHeightPoints;
+    case Shape::Disc:
+      return 1 + 3 * std::int64_t{settings.rings} * (settings.rings + 1);
+    case Shape::Mesh:
+      break;
+  }
+  return settings.loaded ? static_cast<std::int64_t>(settings.loaded->mesh.positions.size()) : 0;
+}
+
+std::optional<std::int32_t> VertexOf(const ClothSettings& settings, const GridPoint& point) {
+  const auto [i, j] = point;
+  if (settings.shape == Shape::Grid) {
+    if (i < 0 || j < 0 || i >= settings.numWidthPoints || j >= settings.numHeightPoints) return std::nullopt;
+    return j * settings.numWidthPoints + i;
+  }
+  if (i < 0 || j != 0) return std::nullopt;
+  if (settings.shape == Shape::Mesh && settings.loaded && !settings.loaded->mesh.source.empty()) {
+    const std::vector<std::int32_t>& source = settings.loaded->mesh.source;
+    const auto found = std::lower_bound(source.begin(), source.end(), i);
+    if (found == source.end() || *found != i) return std::nullopt;
+    return static_cast<std::int32_t>(found - source.begin());
+  }
+  return i < VertexCount(settings) ? std::optional(i) : std::nullopt;
+}
+
+GridPoint PointOf(const ClothSettings& settings, std::int32_t vertex) {
+  if (settings.shape == Shape::Grid) return {vertex % settings.numWidthPoints, vertex / settings.numWidthPoints};
+  if (settings.shape == Shape::Mesh && settings.loaded && !settings.loaded->mesh.source.empty())
+    return {settings.loaded->mesh.source[static_cast<std::size_t>(vertex)], 0};
+  return {vertex, 0};
+}
+
+MeshOptions MeshOptionsOf(const ClothSettings& settings) {
+  return {.scale = settings.meshScale,
+          .rest = settings.restShape,
+          .metresPerUv = settings.metresPerUv,
+          .weld = settings.weld,
+          .weldDistance = settings.weldDistance};
+}
+
+const VertexGroup* FindVertexGroup(const ClothSettings& settings, std::string_view name) {
+  if (settings.shape != Shape::Mesh || !settings.loaded || name.empty()) return nullptr;
+  for (const VertexGroup& group : settings.loaded->mesh.groups) {
+    if (group.name == name) return &group;
+  }
+  return nullptr;
+}
+
+ClothSize SizeOf(const ClothSettings& settings) {
+  switch (settings.shape) {
+    case Shape::Grid:
+      return {
+          std::max(settings.width, settings.height), settings.width * settings.height,
+          std::max(settings.width / (settings.numWidthPoints - 1), settings.height / (settings.numHeightPoints - 1))};
+    case Shape::Disc:
+      return {2 * settings.radius, std::numbers::pi * settings.radius * settings.radius,
+              settings.radius / settings.rings};
+    case Shape::Mesh:
+      break;
+  }
+  assert(settings.loaded);
+  const RestMesh& mesh = settings.loaded->mesh;
+  ClothSize size;
+  Vec3 low = mesh.positions[0], high = low;
+  for (const Vec3& p : mesh.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  size.extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) size.area += MaterialArea(mesh.material, t);
+  // A right triangle of a grid has half the square of its spacing.
+  size.spacing = std::sqrt(2 * size.area / static_cast<double>(mesh.triangles.size()));
+  return size;
+}
+
 std::vector<std::int32_t> PinnedVertices(const ClothSettings& settings) {
   std::vector<std::int32_t> vertices;
-  for (const GridPoint& pin : settings.pinned) vertices.push_back(pin.j * settings.numWidthPoints + pin.i);
+  for (const GridPoint& pin : settings.pinned) {
+    if (const auto vertex = VertexOf(settings, pin)) vertices.push_back(*vertex);
+  }
+  if (const VertexGroup* const group = FindVertexGroup(settings, settings.pinnedGroup))
+    vertices.insert(vertices.end(), group->vertices.begin(), group->vertices.end());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;

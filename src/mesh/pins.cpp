@@ -22,9 +22,8 @@ void Pins::Update(const Scene& scene, std::span<const int> firstPoint, double ti
       pin.firstMotion = static_cast<int>(motions_.size());
       for (const PinMotion& motion : scene.pinMotions) {
         if (static_cast<std::size_t>(motion.cloth) != c) continue;
-        const bool named = std::any_of(motion.points.begin(), motion.points.end(), [&](const GridPoint& g) {
-          return g.j * scene.cloths[c].numWidthPoints + g.i == vertex;
-        });
+        const bool named = std::any_of(motion.points.begin(), motion.points.end(),
+                                       [&](const GridPoint& g) { return VertexOf(scene.cloths[c], g) == vertex; });
         if (named || motion.points.empty())
           motions_.push_back({motion.cloth, {}, motion.start, motion.end, motion.displacement});
       }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "math/splitmix64.h"
 #include "mesh/cloth_model.h"
 
 namespace percale {
@@ -40,7 +41,61 @@ Vec3 WarpDirection(const Vec3& e1, const Vec3& e2, const Vec3& n, std::span<cons
   return e1;
 }
 
+/// Turns points around the middle of their box: about x, then y, then z [degree].
+void Rotate(const Vec3& degrees, std::vector<Vec3>& points) {
+  if (degrees == Vec3{} || points.empty()) return;
+  Vec3 low = points[0], high = low;
+  for (const Vec3& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 middle = 0.5 * (low + high), angle = degrees * (std::numbers::pi / 180);
+  const auto turn = [](double& a, double& b, double by) {
+    const double c = std::cos(by), s = std::sin(by), turned = c * a - s * b;
+    b = s * a + c * b;
+    a = turned;
+  };
+  for (Vec3& p : points) {
+    p -= middle;
+    turn(p.y, p.z, angle.x);
+    turn(p.z, p.x, angle.y);
+    turn(p.x, p.y, angle.z);
+    p += middle;
+  }
+}
+
+/// A disc as the settings place it: around (0, 1, 0), lying, or standing with a slight random z.
+RestMesh MakePlacedDisc(const ClothSettings& settings) {
+  RestMesh mesh = MakeDisc(settings.radius, settings.rings);
+  SplitMix64 random(static_cast<std::uint64_t>(settings.seed));
+  for (Vec3& p : mesh.positions) {
+    p = settings.orientation == Orientation::Horizontal ? Vec3{p.x, 1, p.z}
+                                                        : Vec3{p.x, 1 - p.z, (2 * random.NextUnit() - 1) / 1000};
+    p += settings.origin;
+  }
+  return mesh;
+}
+
 }  // namespace
+
+RestMesh MakeClothMesh(const ClothSettings& settings) {
+  RestMesh mesh;
+  switch (settings.shape) {
+    case Shape::Grid:
+      mesh = MakeGridMesh(settings);
+      break;
+    case Shape::Disc:
+      mesh = MakePlacedDisc(settings);
+      break;
+    case Shape::Mesh:
+      assert(settings.loaded);
+      mesh = settings.loaded->mesh;
+      for (Vec3& p : mesh.positions) p += settings.origin;
+      break;
+  }
+  Rotate(settings.rotation, mesh.positions);
+  return mesh;
+}
 
 RestMesh MakeGridMesh(const ClothSettings& settings) {
   ClothModel grid = MakeGrid(settings);

@@ -19,6 +19,9 @@ RestMesh MakeGridMesh(const ClothSettings& settings);
 /// k / rings of `radius` [m, > 0]; 6 rings^2 triangles, rings >= 1. In the fabric, x runs along x and y along -z.
 RestMesh MakeDisc(double radius, int rings);
 
+/// The cloth of the settings, placed: a grid, a disc, or the mesh that they hold.
+RestMesh MakeClothMesh(const ClothSettings& settings);
+
 /// Fabric coordinates of triangles that are at rest in space, three per triangle: each laid into its own plane with its
 /// first corner at the origin. The warp runs in the direction in which the first texture coordinate grows and the
 /// second stays; where these are missing or have no area, along `warp` projected into the triangle; where there is none

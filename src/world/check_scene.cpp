@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "mesh/cloth_model.h"
 #include "percale/parameters.h"
 #include "world/limits.h"
 
@@ -40,9 +41,11 @@ class Checker {
     if (scene_.cloths.empty()) Error("/cloth", "expected at least one cloth, got none; state an object \"cloth\"");
     CheckSize();
     for (std::size_t c = 0; c < scene_.cloths.size(); ++c) CheckCloth(c);
+    for (std::size_t p = 0; p < scene_.patches.size(); ++p) CheckPatch(p);
     for (std::size_t p = 0; p < scene_.planes.size(); ++p) CheckPlane(p);
     for (std::size_t m = 0; m < scene_.pinMotions.size(); ++m) CheckMotion(m);
     CheckShader();
+    if (scene_.simulation.engine == Engine::Fabric) WarnOfColliders();
     return std::move(diagnostics_);
   }
 
@@ -70,9 +73,7 @@ class Checker {
   void CheckSize() {
     std::int64_t points = 0;
     std::size_t largest = 0;
-    const auto count = [&](std::size_t c) {
-      return std::int64_t{scene_.cloths[c].numWidthPoints} * scene_.cloths[c].numHeightPoints;
-    };
+    const auto count = [&](std::size_t c) { return VertexCount(scene_.cloths[c]); };
     for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
       points += count(c);
       if (count(c) > count(largest)) largest = c;
@@ -87,31 +88,144 @@ class Checker {
     }
     if (points <= most) return;
     const ClothSettings& cloth = scene_.cloths[largest];
-    Error(Path(largest, "num_width_points"),
+    const bool grid = cloth.shape == Shape::Grid;
+    Error(Path(largest, grid                         ? "num_width_points"
+                        : cloth.shape == Shape::Disc ? "rings"
+                                                     : "mesh"),
           "expected at most " + std::to_string(most) + " points in all cloths together, the most " + why + "; got " +
-              std::to_string(points) + ", of which this cloth has " + std::to_string(cloth.numWidthPoints) + " x " +
-              std::to_string(cloth.numHeightPoints));
+              std::to_string(points) + ", of which this cloth has " +
+              (grid ? std::to_string(cloth.numWidthPoints) + " x " + std::to_string(cloth.numHeightPoints)
+                    : std::to_string(VertexCount(cloth))));
   }
 
   static std::string Path(std::size_t cloth, const char* name) {
     return "/cloth/" + std::to_string(cloth) + "/" + name;
   }
   static std::string Text(const GridPoint& p) { return "[" + std::to_string(p.i) + ", " + std::to_string(p.j) + "]"; }
-  static bool Inside(const ClothSettings& cloth, const GridPoint& p) {
-    return p.i >= 0 && p.j >= 0 && p.i < cloth.numWidthPoints && p.j < cloth.numHeightPoints;
+  static std::string Text(const ClothSettings& cloth, const GridPoint& p) {
+    return cloth.shape == Shape::Grid || p.j != 0 ? Text(p) : std::to_string(p.i);
+  }
+  static bool Inside(const ClothSettings& cloth, const GridPoint& p) { return VertexOf(cloth, p).has_value(); }
+  /// Which points a cloth has.
+  static std::string Points(const ClothSettings& cloth) {
+    switch (cloth.shape) {
+      case Shape::Grid:
+        return "a point of the grid, from [0, 0] to [" + std::to_string(cloth.numWidthPoints - 1) + ", " +
+               std::to_string(cloth.numHeightPoints - 1) + "]";
+      case Shape::Disc:
+        return "a vertex of the disc, from 0 to " + std::to_string(VertexCount(cloth) - 1);
+      case Shape::Mesh:
+        break;
+    }
+    const std::vector<std::int32_t>& source = cloth.loaded->mesh.source;
+    const std::int64_t last = source.empty() ? VertexCount(cloth) - 1 : source.back();
+    return "a vertex of the mesh, from 0 to " + std::to_string(last) +
+           (last + 1 == VertexCount(cloth) ? "" : ", that belongs to a triangle and was not welded to a lower one");
+  }
+
+  /// Whether there is something to check further.
+  bool CheckShape(std::size_t c) {
+    const ClothSettings& cloth = scene_.cloths[c];
+    if (scene_.simulation.engine == Engine::Springs && cloth.shape != Shape::Grid) {
+      Error(Path(c, "shape"), "expected \"grid\", the one shape of the engine springs, got " +
+                                  FormatValue(FindParameter("cloth", "shape")->get(scene_, c)) +
+                                  "; set simulation.engine to \"fabric\"");
+      return false;
+    }
+    if (cloth.shape == Shape::Mesh) return CheckMesh(c);
+    if (!cloth.pinnedGroup.empty()) {
+      Error(Path(c, "pinned_group"), "expected none, for only a mesh has groups; list the points in `pinned`, got " +
+                                         Quote(cloth.pinnedGroup, 40));
+    }
+    return true;
+  }
+
+  bool CheckMesh(std::size_t c) {
+    const ClothSettings& cloth = scene_.cloths[c];
+    if (cloth.mesh.empty()) {
+      Error(Path(c, "mesh"), "expected the file of a mesh, .obj or .ply, got none");
+      return false;
+    }
+    const LoadedMesh* const loaded = cloth.loaded.get();
+    if (!loaded || loaded->file != cloth.mesh || loaded->options != MeshOptionsOf(cloth)) {
+      Error(Path(c, "mesh"), Quote(cloth.mesh, 80) + " is not loaded with these settings; call LoadMeshes first");
+      return false;
+    }
+    if (!cloth.pinnedGroup.empty() && !FindVertexGroup(cloth, cloth.pinnedGroup))
+      Error(Path(c, "pinned_group"), NoGroup(cloth, cloth.pinnedGroup));
+    return true;
+  }
+
+  static std::string NoGroup(const ClothSettings& cloth, const std::string& name) {
+    std::vector<std::string_view> names;
+    std::string list;
+    constexpr std::size_t kMostNamed = 20;
+    for (const VertexGroup& group : cloth.loaded->mesh.groups) {
+      if (names.size() < kMostNamed) list += (names.empty() ? "" : ", ") + Quote(group.name, 40);
+      names.push_back(group.name);
+    }
+    if (names.size() > kMostNamed) list += ", ...";
+    return "expected a group of the mesh, got " + Quote(name, 40) + DidYouMean(name, names) + "; " +
+           (names.empty() ? "it has none: name them by g or o in an .obj" : "it has " + list);
+  }
+
+  void CheckPatch(std::size_t p) {
+    const Patch& patch = scene_.patches[p];
+    const std::string path = "/patch/" + std::to_string(p);
+    if (!CheckClothIndex(path, patch.cloth)) return;
+    if (scene_.simulation.engine != Engine::Fabric) Warn(path, "only the engine \"fabric\" heeds this");
+    const ClothSettings& cloth = scene_.cloths[static_cast<std::size_t>(patch.cloth)];
+    const bool grid = cloth.shape == Shape::Grid;
+    if (!patch.group.empty()) {
+      if (cloth.shape != Shape::Mesh)
+        Error(path + "/group", "expected none, for only a mesh has groups, got " + Quote(patch.group, 40) +
+                                   (grid ? "; state a `rectangle`" : ""));
+      else if (cloth.loaded && !FindVertexGroup(cloth, patch.group))
+        Error(path + "/group", NoGroup(cloth, patch.group));
+    }
+    if (patch.rectangle.empty()) return;
+    if (!grid) {
+      Error(path + "/rectangle", std::string("expected none, for the cloth is no grid") +
+                                     (cloth.shape == Shape::Mesh ? "; state a `group`" : ""));
+    } else if (patch.rectangle.size() != 2) {
+      Error(path + "/rectangle", "expected two opposite corners, [[i0, j0], [i1, j1]], got " +
+                                     std::to_string(patch.rectangle.size()) +
+                                     (patch.rectangle.size() == 1 ? " point" : " points"));
+    } else {
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (!Inside(cloth, patch.rectangle[k]))
+          Error(path + "/rectangle/" + std::to_string(k),
+                "expected " + Points(cloth) + ", got " + Text(patch.rectangle[k]));
+      }
+    }
+  }
+
+  /// Whether there is a cloth of that index.
+  bool CheckClothIndex(const std::string& path, int index) {
+    const std::size_t cloths = scene_.cloths.size();
+    if (static_cast<std::size_t>(index) < cloths) return true;
+    Error(path + "/cloth", "expected the index of a cloth, " +
+                               (cloths == 1 ? "0 as there is only one" : "from 0 to " + std::to_string(cloths - 1)) +
+                               ", got " + std::to_string(index));
+    return false;
   }
 
   void CheckCloth(std::size_t c) {
-    const ClothSettings& cloth = scene_.cloths[c];
-    if (cloth.width / (cloth.numWidthPoints - 1) < kSmallestSpacing)
-      TooSmall(c, "width", cloth.width, cloth.numWidthPoints);
-    if (cloth.height / (cloth.numHeightPoints - 1) < kSmallestSpacing)
-      TooSmall(c, "height", cloth.height, cloth.numHeightPoints);
+    if (!CheckShape(c)) return;
+    if (scene_.cloths[c].shape == Shape::Grid) CheckSpacing(c);
     CheckPins(c);
     if (scene_.simulation.engine == Engine::Fabric)
       CheckFabric(c);
     else
       CheckSprings(c);
+  }
+
+  void CheckSpacing(std::size_t c) {
+    const ClothSettings& cloth = scene_.cloths[c];
+    if (cloth.width / (cloth.numWidthPoints - 1) < kSmallestSpacing)
+      TooSmall(c, "width", cloth.width, cloth.numWidthPoints);
+    if (cloth.height / (cloth.numHeightPoints - 1) < kSmallestSpacing)
+      TooSmall(c, "height", cloth.height, cloth.numHeightPoints);
   }
 
   void CheckFabric(std::size_t c) {
@@ -166,12 +280,6 @@ class Checker {
                              std::to_string(points) + " points");
   }
 
-  /// The pins of a cloth, sorted, for look-up.
-  static std::vector<GridPoint> SortedPins(const ClothSettings& cloth) {
-    std::vector<GridPoint> pins = cloth.pinned;
-    std::sort(pins.begin(), pins.end(), Before);
-    return pins;
-  }
   static bool Before(const GridPoint& a, const GridPoint& b) { return a.j != b.j ? a.j < b.j : a.i < b.i; }
 
   /// Places in `points` whose point stands earlier in the list as well.
@@ -193,13 +301,18 @@ class Checker {
     for (std::size_t k = 0; k < cloth.pinned.size(); ++k) {
       if (Inside(cloth, cloth.pinned[k])) continue;
       Error(Path(c, "pinned") + "/" + std::to_string(k),
-            "expected a point of the grid, from [0, 0] to [" + std::to_string(cloth.numWidthPoints - 1) + ", " +
-                std::to_string(cloth.numHeightPoints - 1) + "], got " + Text(cloth.pinned[k]));
+            "expected " + Points(cloth) + ", got " + Text(cloth, cloth.pinned[k]));
     }
     for (const std::size_t k : Repeated(cloth.pinned)) {
       Warn(Path(c, "pinned") + "/" + std::to_string(k),
-           Text(cloth.pinned[k]) + " is pinned already; the second mention does nothing");
+           Text(cloth, cloth.pinned[k]) + " is pinned already; the second mention does nothing");
     }
+  }
+
+  void WarnOfColliders() {
+    const char* const why = "the engine fabric does not collide yet: cloth passes through";
+    for (std::size_t s = 0; s < scene_.spheres.size(); ++s) Warn("/sphere/" + std::to_string(s), why);
+    for (std::size_t p = 0; p < scene_.planes.size(); ++p) Warn("/plane/" + std::to_string(p), why);
   }
 
   void CheckPlane(std::size_t p) {
@@ -216,30 +329,26 @@ class Checker {
       Error(path + "/end", "expected a time after the start at " + FormatNumber(motion.start) + " s, got " +
                                FormatNumber(motion.end) + " s");
     }
-    const std::size_t cloths = scene_.cloths.size();
-    if (static_cast<std::size_t>(motion.cloth) >= cloths) {
-      Error(path + "/cloth", "expected the index of a cloth, " +
-                                 (cloths == 1 ? "0 as there is only one" : "from 0 to " + std::to_string(cloths - 1)) +
-                                 ", got " + std::to_string(motion.cloth));
-      return;
-    }
+    if (!CheckClothIndex(path, motion.cloth)) return;
     const ClothSettings& cloth = scene_.cloths[static_cast<std::size_t>(motion.cloth)];
-    const std::string whose = cloths == 1 ? "of the cloth" : "of cloth " + std::to_string(motion.cloth);
-    if (cloth.pinned.empty()) {
+    const std::string whose = scene_.cloths.size() == 1 ? "of the cloth" : "of cloth " + std::to_string(motion.cloth);
+    if (cloth.shape == Shape::Mesh && !cloth.loaded) return;
+    const std::vector<std::int32_t> pins = PinnedVertices(cloth);
+    if (pins.empty()) {
       Error(path + (motion.points.empty() ? "" : "/points"),
             "there is no pin " + whose + " that could move; state its `pinned` points");
       return;
     }
-    const std::vector<GridPoint> pins = SortedPins(cloth);
     for (std::size_t k = 0; k < motion.points.size(); ++k) {
-      if (std::binary_search(pins.begin(), pins.end(), motion.points[k], Before)) continue;
+      const auto vertex = VertexOf(cloth, motion.points[k]);
+      if (vertex && std::binary_search(pins.begin(), pins.end(), *vertex)) continue;
       Error(path + "/points/" + std::to_string(k), "expected a pinned point " + whose + ", got " +
-                                                       Text(motion.points[k]) +
+                                                       Text(cloth, motion.points[k]) +
                                                        "; add it to `pinned` or take it out here");
     }
     for (const std::size_t k : Repeated(motion.points)) {
       Warn(path + "/points/" + std::to_string(k),
-           Text(motion.points[k]) + " is moved already; the second mention does nothing");
+           Text(cloth, motion.points[k]) + " is moved already; the second mention does nothing");
     }
   }
 

@@ -69,7 +69,7 @@ constexpr EngineTable FabricTable() {
   table.create = [](const Scene& scene, std::span<const ClothModel>,
                     const Executor& executor) -> std::shared_ptr<void> {
     std::vector<RestMesh> meshes;
-    for (const ClothSettings& cloth : scene.cloths) meshes.push_back(MakeGridMesh(cloth));
+    for (const ClothSettings& cloth : scene.cloths) meshes.push_back(MakeClothMesh(cloth));
     return std::make_shared<FabricEngine>(scene, meshes, executor);
   };
   table.applyForces = [](void* e, double time, std::span<const Gust> gusts, std::span<const Handle> handles) {

@@ -26,6 +26,8 @@ constexpr std::string_view kEngines[] = {"springs", "fabric"};
 constexpr std::string_view kHashFunctions[] = {"exact", "linear", "powers", "brute"};
 constexpr std::string_view kPlaneResponses[] = {"interpolate", "offset", "hold"};
 constexpr std::string_view kTangents[] = {"constant", "from_uv"};
+constexpr std::string_view kShapes[] = {"grid", "disc", "mesh"};
+constexpr std::string_view kRestShapes[] = {"space", "texture"};
 constexpr std::string_view kOrientations[] = {"horizontal", "vertical"};
 constexpr std::string_view kFabricNames[] = {"cotton", "wool",  "wool_lycra", "polyester",
                                              "silk",   "denim", "leather",    "felt"};
@@ -43,6 +45,12 @@ constexpr std::span<const std::string_view> NamesOf(PlaneResponse) {
 }
 constexpr std::span<const std::string_view> NamesOf(Tangents) {
   return kTangents;
+}
+constexpr std::span<const std::string_view> NamesOf(Shape) {
+  return kShapes;
+}
+constexpr std::span<const std::string_view> NamesOf(RestShape) {
+  return kRestShapes;
 }
 constexpr std::span<const std::string_view> NamesOf(Orientation) {
   return kOrientations;
@@ -201,6 +209,8 @@ constexpr RowOf<&Scene::spheres, Field> Sphere{"sphere"};
 template <auto Field>
 constexpr RowOf<&Scene::planes, Field> Plane{"plane"};
 template <auto Field>
+constexpr RowOf<&Scene::patches, Field> PatchOf{"patch"};
+template <auto Field>
 constexpr RowOf<&Scene::pinMotions, Field> Motion{"pin_motion"};
 template <auto Field>
 constexpr RowOf<&Scene::wind, Field> Wind{"wind"};
@@ -218,6 +228,8 @@ std::vector<Parameter> MakeTable() {
   using C = ClothSettings;
   using S = SimulationSettings;
   return {
+    Cloth<&C::shape>({.name = "shape", .label = "Shape", .effect = kRebuild, .engine = kFabric,
+      .help = "grid: a rectangle of `width` and `height`; disc: of `radius`; mesh: from the file `mesh`."}),
     Cloth<&C::width>({.name = "width", .label = "Width", .unit = "m", .min = 0, .max = kFarthest,
       .minExclusive = true, .required = true,
       .typicalMin = 0.1, .typicalMax = 4, .effect = kRebuild, .help = "Extent of the sheet along x."}),
@@ -239,11 +251,13 @@ std::vector<Parameter> MakeTable() {
       .help = "Points of cloth keep twice this apart; at most half the grid's spacing, or the sheet swells."}),
     Cloth<&C::orientation>({.name = "orientation", .label = "Orientation", .min = 0, .max = 1, .required = true,
       .effect = kRebuild,
-      .help = "0: the sheet lies at y = 1 over x, z. 1: it stands in x, y, with a slight random z."}),
+      .help = "0: the sheet lies at y = 1 over x, z. 1: it stands in x, y, with a slight random z. A mesh is as in its file."}),
     Cloth<&C::origin>({.name = "origin", .label = "Origin", .unit = "m", .min = -kFarthest, .max = kFarthest,
       .typicalMin = -2, .typicalMax = 2, .effect = kRebuild, .help = "Moves the whole sheet."}),
     Cloth<&C::pinned>({.name = "pinned", .label = "Pinned points",
-      .help = "Immovable points, each as [i, j]: column along the width, row along the height, from 0."}),
+      .help = "Immovable points, each as [i, j]: column along the width, row along the height, from 0; or as a number v, which is [v, 0]: vertex v of a disc or mesh."}),
+    Cloth<&C::pinnedGroup>({.name = "pinned_group", .label = "Pinned group", .engine = kFabric,
+      .help = "Pins all vertices of this group of the mesh as well; groups are what its file names by g or o."}),
     Cloth<&C::enableStructural>({.name = "enable_structural", .label = "Structural", .required = true,
       .engine = kSprings, .help = "Springs to the neighbours left and up."}),
     Cloth<&C::enableShearing>({.name = "enable_shearing", .label = "Shearing", .required = true,
@@ -261,6 +275,30 @@ std::vector<Parameter> MakeTable() {
       .engine = kSprings, .help = "Stiffness of the springs; 500 sags like a net, 5000 like cloth, 50000 is stiff."}),
     Cloth<&C::seed>({.name = "seed", .label = "Seed", .min = 0, .max = kLargestInt,
       .typicalMin = 0, .typicalMax = 1000, .effect = kRebuild, .help = "Of the standing sheet's random z."}),
+    Cloth<&C::radius>({.name = "radius", .label = "Radius", .unit = "m", .min = 0, .max = kFarthest, .minExclusive = true,
+      .typicalMin = 0.1, .typicalMax = 2, .effect = kRebuild, .engine = kFabric,
+      .help = "Of a disc, which lies or stands around (0, 1, 0)."}),
+    Cloth<&C::rings>({.name = "rings", .label = "Rings", .min = 1, .max = 6000,
+      .typicalMin = 2, .typicalMax = 100, .effect = kRebuild, .engine = kFabric,
+      .help = "Of a disc's triangles around its middle, which is vertex 0; ring k has 6 k vertices from 1 + 3 k (k - 1) on."}),
+    Cloth<&C::mesh>({.name = "mesh", .label = "Mesh", .effect = kRebuild, .engine = kFabric,
+      .help = "File of a mesh, .obj or .ply; the path begins at the folder of the scene's file."}),
+    Cloth<&C::meshScale>({.name = "mesh_scale", .label = "Mesh scale", .unit = "m", .min = 0, .max = 1e6, .minExclusive = true,
+      .typicalMin = 0.001, .typicalMax = 10, .logarithmic = true, .effect = kRebuild, .engine = kFabric,
+      .help = "Length of one unit of the mesh's file; 0.01 where it is in centimetres."}),
+    Cloth<&C::restShape>({.name = "rest_shape", .label = "Rest shape", .effect = kRebuild, .engine = kFabric,
+      .help = "Where the mesh is at rest: space: as its vertices lie; texture: flat, as its texture coordinates lie."}),
+    Cloth<&C::metresPerUv>({.name = "metres_per_uv", .label = "Metres per uv", .unit = "m", .min = 0, .max = 1e6, .minExclusive = true,
+      .typicalMin = 0.1, .typicalMax = 10, .logarithmic = true, .effect = kRebuild, .engine = kFabric,
+      .help = "Length of one unit of the texture, where that is the rest shape."}),
+    Cloth<&C::weld>({.name = "weld", .label = "Weld", .effect = kRebuild, .engine = kFabric,
+      .help = "Makes vertices of the mesh that lie together one, which closes seams."}),
+    Cloth<&C::weldDistance>({.name = "weld_distance", .label = "Weld distance", .unit = "m", .min = 0, .max = 1e3,
+      .typicalMin = 0, .typicalMax = 0.01, .effect = kRebuild, .engine = kFabric,
+      .help = "Farthest that such vertices lie apart; 0 for those at the same place."}),
+    Cloth<&C::rotation>({.name = "rotation", .label = "Rotation", .unit = "degree", .min = -360, .max = 360,
+      .typicalMin = -180, .typicalMax = 180, .effect = kRebuild, .engine = kFabric,
+      .help = "Turns the cloth about x, then y, then z, around the middle of its box."}),
     WithChoice(Cloth<&C::fabric>({.name = "fabric", .label = "Fabric", .engine = kFabric,
       .help = "Material; sets density, stiffness and damping to what was measured, and any of them may be changed."}),
       &ChooseFabric),
@@ -324,10 +362,26 @@ std::vector<Parameter> MakeTable() {
     Plane<&PlaneSettings::friction>({.name = "friction", .label = "Friction", .min = 0, .max = 1, .required = true,
       .typicalMin = 0, .typicalMax = 1, .help = "0: cloth slides; 1: it stays where it touched."}),
 
+    PatchOf<&Patch::cloth>({.name = "cloth", .label = "Cloth", .min = 0, .max = kMostPoints,
+      .help = "Which cloth, counted from 0."}),
+    PatchOf<&Patch::group>({.name = "group", .label = "Group",
+      .help = "Group of the mesh's vertices; its triangles are those with all corners in it."}),
+    PatchOf<&Patch::rectangle>({.name = "rectangle", .label = "Rectangle",
+      .help = "Part of a grid, [[i0, j0], [i1, j1]], with both corners; none: all of the cloth."}),
+    PatchOf<&Patch::stretch>({.name = "stretch", .label = "Stretch", .min = 0, .max = 1e6, .minExclusive = true,
+      .typicalMin = 0.01, .typicalMax = 100, .logarithmic = true,
+      .help = "Times the stiffness against stretch and shear."}),
+    PatchOf<&Patch::bend>({.name = "bend", .label = "Bend", .min = 0, .max = 1e6,
+      .typicalMin = 0.01, .typicalMax = 100, .logarithmic = true,
+      .help = "Times the stiffness against bending."}),
+    PatchOf<&Patch::density>({.name = "density", .label = "Density", .min = 0, .max = 1e6, .minExclusive = true,
+      .typicalMin = 0.1, .typicalMax = 10, .logarithmic = true,
+      .help = "Times the density."}),
+
     Motion<&PinMotion::cloth>({.name = "cloth", .label = "Cloth", .min = 0, .max = kMostPoints,
       .help = "Which cloth, counted from 0."}),
     Motion<&PinMotion::points>({.name = "points", .label = "Points",
-      .help = "Pinned points that move, each as [i, j]; none: all pins of the cloth."}),
+      .help = "Pinned points that move, each as [i, j] or a vertex; none: all pins of the cloth."}),
     Motion<&PinMotion::start>({.name = "start", .label = "Start", .unit = "s", .min = 0, .max = kLatest,
       .typicalMin = 0, .typicalMax = 10, .help = "When the motion begins."}),
     Motion<&PinMotion::end>({.name = "end", .label = "End", .unit = "s", .min = 0, .max = kLatest,
@@ -436,6 +490,7 @@ constexpr ParameterGroup kGroups[] = {
     Group<&Scene::cloths>("cloth", true, "A sheet of cloth."),
     Group<&Scene::spheres>("sphere", false, "A ball that cloth rests on."),
     Group<&Scene::planes>("plane", false, "An endless flat wall or floor."),
+    Group<&Scene::patches>("patch", false, "A part of a cloth whose material differs from the rest by factors."),
     Group<&Scene::pinMotions>("pin_motion", false, "Carries pinned points of a cloth along a straight line."),
     Group<&Scene::wind>("wind", false, "Moving air that pushes on the cloth."),
     Group<&Scene::simulation>("simulation", false, "How time is cut into steps, and which rules act."),
@@ -487,7 +542,7 @@ std::string Expected(const Parameter& p, bool all) {
     case ValueKind::GridPoints:
       break;
   }
-  return "an array of points [i, j]";
+  return "an array of points [i, j], or of vertices";
 }
 
 std::string Found(const Parameter& p, bool all, const Value& value) {
@@ -587,7 +642,8 @@ std::optional<Value> ParseValue(const Parameter& p, std::string_view text) {
   if (!elements) return std::nullopt;
   std::vector<GridPoint> points;
   for (const std::string_view element : *elements) {
-    const auto ij = Numbers(element, 2);
+    const auto vertex = ParseTypedNumber(element);
+    const auto ij = vertex ? std::optional(std::vector{*vertex, 0.0}) : Numbers(element, 2);
     if (!ij || !IsWholeInt((*ij)[0]) || !IsWholeInt((*ij)[1])) return std::nullopt;
     points.push_back({static_cast<int>((*ij)[0]), static_cast<int>((*ij)[1])});
   }
@@ -633,6 +689,12 @@ std::vector<Difference> Differences(const Scene& a, const Scene& b) {
 std::optional<Effect> EffectOf(const Scene& before, const Scene& after) {
   std::optional<Effect> greatest;
   if (before.planesFirst != after.planesFirst) greatest = Effect::Live;
+  for (std::size_t c = 0; c < std::min(before.cloths.size(), after.cloths.size()); ++c) {
+    // The file may have changed.
+    const ClothSettings &a = before.cloths[c], &b = after.cloths[c];
+    const bool meshes = a.shape == Shape::Mesh && b.shape == Shape::Mesh && a.loaded && b.loaded;
+    if (meshes && a.loaded != b.loaded && *a.loaded != *b.loaded) greatest = Effect::Rebuild;
+  }
   for (const Difference& difference : Differences(before, after)) {
     greatest = std::max(greatest, std::optional(difference.parameter->effect));
   }

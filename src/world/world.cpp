@@ -9,6 +9,8 @@
 
 #include "core/executor.h"
 #include "mesh/cloth_model.h"
+#include "mesh/rest_mesh.h"
+#include "mesh/topology.h"
 #include "percale/parameters.h"
 #include "world/divergence.h"
 #include "world/engine.h"
@@ -43,6 +45,24 @@ class StageClock {
 /// Whether two scenes have the same cloths, apart from settings that act at once.
 bool SameCloths(const Scene& a, const Scene& b) {
   return EffectOf(a, b) != Effect::Rebuild;
+}
+
+ClothModel MakeModel(const ClothSettings& settings, Engine engine) {
+  if (engine == Engine::Springs) return MakeGrid(settings);
+  RestMesh mesh = MakeClothMesh(settings);
+  ClothModel model;
+  if (settings.shape == Shape::Grid)
+    model.numWidth = settings.numWidthPoints, model.numHeight = settings.numHeightPoints;
+  model.start = std::move(mesh.positions);
+  model.uv = std::move(mesh.uv);
+  model.triangles = std::move(mesh.triangles);
+  return model;
+}
+
+/// The springs of a cloth; of one without, the edges of its triangles.
+std::vector<Edge> SpringsOf(const ClothModel& model, const ClothSettings& settings, Engine engine) {
+  if (engine == Engine::Springs) return EnabledSprings(model, settings);
+  return BuildTopology(model.start.size(), model.triangles).edges;
 }
 
 }  // namespace
@@ -82,13 +102,13 @@ struct World::Impl {
 
 void World::Impl::Build() {
   std::vector<ClothModel> models;
-  for (const ClothSettings& settings : scene->cloths) models.push_back(MakeGrid(settings));
+  for (const ClothSettings& settings : scene->cloths) models.push_back(MakeModel(settings, scene->simulation.engine));
   engine = &FindEngine(scene->simulation.engine);
   engineState = engine->create(*scene, models, executor);
   cloths.clear();
   for (std::size_t c = 0; c < models.size(); ++c) {
     Cloth cloth;
-    cloth.springs = EnabledSprings(models[c], scene->cloths[c]);
+    cloth.springs = SpringsOf(models[c], scene->cloths[c], scene->simulation.engine);
     cloth.pinned = PinnedVertices(scene->cloths[c]);
     cloth.model = std::move(models[c]);
     cloths.push_back(std::move(cloth));
@@ -101,7 +121,8 @@ void World::Impl::Configure(std::shared_ptr<const Scene> changed) {
   scene = std::move(changed);
   engine->configure(engineState.get(), *scene);
   for (std::size_t c = 0; c < cloths.size(); ++c) {
-    cloths[c].springs = EnabledSprings(cloths[c].model, scene->cloths[c]);
+    if (scene->simulation.engine == Engine::Springs)
+      cloths[c].springs = EnabledSprings(cloths[c].model, scene->cloths[c]);
     cloths[c].pinned = PinnedVertices(scene->cloths[c]);
   }
 }

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import subprocess
+import tempfile
 import unittest
 
 from window import PERCALE, ViewerTest, scene
@@ -225,6 +226,40 @@ class HandTest(ViewerTest):
             since = self.drag(viewer, eye.at(0.5, 0, 1.2), eye.at(0.5, 0.1, 1.2))
             moved = viewer.wait("set", since, path="/plane/0/point", where=lambda e: e["value"][1] > 0.05)
             self.assertEqual([moved["value"][0], moved["value"][2]], [0, 0])
+
+    def test_a_mesh_is_pinned_and_dragged_as_a_grid_is(self):
+        # A standing square of four triangles around vertex 1; vertex 0 belongs to nothing.
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "a.obj"), "w", encoding="ascii") as file:
+                file.write("v 9 9 9\nv 0.5 0.5 0\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                           "g all\nf 2 3 4\nf 2 4 5\nf 2 5 6\nf 2 6 3\n")
+            path = os.path.join(folder, "a.json")
+            with open(path, "w", encoding="ascii") as file:
+                json.dump({"simulation": {"engine": "fabric", "gravity": [0, 0, 0]},
+                           "cloth": {"shape": "mesh", "mesh": "a.obj", "pinned_group": "all"},
+                           "camera": {"target": [0.5, 0.5, 0], "distance": 2}}, file)
+            with self.viewer("-f", path, "--shader", "Normal") as viewer:
+                eye = Eye(viewer, (0.5, 0.5, 0), 2)
+                since = self.click(viewer, eye.at(0.52, 0.5, 0))
+                settings = json.loads(viewer.wait("settings", since)["config"])["cloth"]
+                self.assertEqual(settings["pinned_group"], "")
+                self.assertEqual(settings["pinned"], [[2, 0], [3, 0], [4, 0], [5, 0]])
+                since = self.click(viewer, eye.at(0.52, 0.5, 0))
+                self.assertIn([1, 0], viewer.wait("set", since, path="/cloth/0/pinned")["value"])
+                since = self.click(viewer, eye.at(0.52, 0.5, 0))
+                self.assertNotIn([1, 0], viewer.wait("set", since, path="/cloth/0/pinned")["value"])
+                start = viewer.start["hash"]
+                since = self.drag(viewer, eye.at(0.5, 0.5, 0), eye.at(0.6, 0.6, 0))
+                self.assertEqual(viewer.wait("place", since)["handles"][0]["vertex"], 0)
+                viewer.settle()
+                self.assertNotEqual(viewer.state()["hash"], start)
+                self.assertEqual(viewer.count("message", severity="error"), 0)
+                end = viewer.state()["hash"]
+                viewer.xdotool("key", "Escape")
+                self.assertEqual(viewer.ended(), 0)
+                replayed = self.replay(viewer.log)
+                self.assertEqual(replayed.returncode, 0, replayed.stderr)
+                self.assertIn(f"state   {end}", replayed.stdout)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "mesh/rest_mesh.h"
 
 using namespace percale;
 using namespace percale::viewer;
@@ -35,6 +39,23 @@ TEST_CASE("the hand's tools will do for cloths of any size, and for none") {
   }
   const Scene none;
   CHECK_FALSE(Check(GustTowards(none, {0, 0, 0})));
+}
+
+TEST_CASE("the hand grips a disc and a mesh as it does a grid") {
+  Scene scene = Square(1, 50);
+  ClothSettings& cloth = scene.cloths[0];
+  cloth.shape = Shape::Disc;
+  cloth.radius = 0.5;
+  cloth.rings = 4;
+  const Handle handle = GripOf(scene, 0, 7, {1, 2, 3});
+  CHECK_FALSE(Check(handle));
+  CHECK(handle.radius > cloth.radius / cloth.rings);
+  CHECK_FALSE(Check(BallFrom(scene, {0, 0, 0}, {0, 0, -1})));
+  RestMesh disc = MakeDisc(0.5, 4);
+  cloth.loaded = std::make_shared<const LoadedMesh>(LoadedMesh{"disc.obj", {}, std::move(disc)});
+  cloth.shape = Shape::Mesh;
+  CHECK(GripOf(scene, 0, 7, {}).radius == doctest::Approx(handle.radius).epsilon(0.05));
+  CHECK(BallFrom(scene, {0, 0, 0}, {0, 0, -1}).mass == doctest::Approx(0.1 * cloth.density * 0.75).epsilon(0.1));
 }
 
 TEST_CASE("a ball grows with the cloth and weighs with it, and flies where it is thrown") {

@@ -104,8 +104,10 @@ TEST_CASE("Names are unique, groups exist, defaults are in range, and everything
 
 TEST_CASE("Only what keeps the grid and its start the same acts on a running cloth") {
   const std::set<std::string_view> rebuild = {
-      "width",  "height", "num_width_points", "num_height_points", "orientation",
-      "origin", "seed",   "warp_angle",       "bending_law"};
+      "shape",         "width",      "height",     "num_width_points", "num_height_points",
+      "orientation",   "origin",     "seed",       "radius",           "rings",
+      "mesh",          "mesh_scale", "rest_shape", "metres_per_uv",    "weld",
+      "weld_distance", "rotation",   "warp_angle", "bending_law"};
   for (const Parameter& p : Parameters()) {
     const bool expected = (p.group == "cloth" && rebuild.count(p.name) > 0) || p.name == "engine";
     CHECK_MESSAGE((p.effect == Effect::Rebuild) == expected, p.name);
@@ -216,6 +218,8 @@ TEST_CASE("An assignment sets what its path names") {
   CHECK(scene.simulation.planeResponse == PlaneResponse::Hold);
   REQUIRE(ApplyAssignment(scene, "cloth.0.pinned=[[0,0], [3, 4]]"));
   CHECK(scene.cloths[0].pinned == std::vector<GridPoint>{{0, 0}, {3, 4}});
+  REQUIRE(ApplyAssignment(scene, "cloth.0.pinned=[7, [3,4]]"));
+  CHECK(scene.cloths[0].pinned == std::vector<GridPoint>{{7, 0}, {3, 4}});
   REQUIRE(ApplyAssignment(scene, "cloth.0.pinned=[]"));
   CHECK(scene.cloths[0].pinned.empty());
   REQUIRE(ApplyAssignment(scene, "cloth.orientation=1"));
@@ -267,7 +271,8 @@ TEST_CASE("A wrong assignment changes nothing and says why") {
       {"wind.velocity=[1,2]", "expected an array of three numbers"},
       {"wind.velocity=[1,2,x]", "expected an array of three numbers"},
       {"wind.velocity=1,2,3", "expected an array of three numbers"},
-      {"cloth.pinned=[0,0]", "expected an array of points [i, j]"},
+      {"cloth.pinned=[0.5]", "expected an array of points [i, j]"},
+      {"cloth.pinned=5", "expected an array of points [i, j]"},
       {"cloth.pinned=[[0,0]", "expected an array of points [i, j]"},
       {"cloth.pinned=[[0,0.5]]", "expected an array of points [i, j]"},
       {"cloth.pinned=[]]", "expected an array of points [i, j]"},
@@ -290,6 +295,9 @@ TEST_CASE("A wrong assignment changes nothing and says why") {
 TEST_CASE("A scene of sensible settings has nothing wrong with it") {
   Scene scene = OneOfEach();
   scene.spheres[0].origin = {0, 1, 0};
+  REQUIRE(CheckScene(scene).size() == 1);
+  CHECK(Mentions(CheckScene(scene), Severity::Warning, "/patch/0: only the engine \"fabric\" heeds this"));
+  scene.patches.clear();
   CHECK(CheckScene(scene).empty());
 }
 
