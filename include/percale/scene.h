@@ -41,6 +41,8 @@ enum class MembraneLaw { StVenantKirchhoff, NeoHookean };
 /// Bending by the second derivatives of the sheet, which are linear in the positions: for sheets that are flat at
 /// rest and hardly stretch. Or by the angles between triangles: any rest shape, and plastic folds.
 enum class BendingLaw { Quadratic, Hinges };
+/// The shape that BendingLaw::Hinges bends back to.
+enum class RestAngles { Flat, Start };
 
 struct ClothSettings {
   Shape shape = Shape::Grid;
@@ -86,6 +88,7 @@ struct ClothSettings {
   double pressure = 0;             ///< Inside of a closed cloth above the outside [Pa].
   MembraneLaw membraneLaw = MembraneLaw::StVenantKirchhoff;
   BendingLaw bendingLaw = BendingLaw::Quadratic;
+  RestAngles restAngles = RestAngles::Flat;
 
   Vec3 color{1, 1, 1};      ///< Of the front, times the look's base colour, 0..1 each.
   Vec3 backColor{1, 1, 1};  ///< The same of the back, where a shader tells the sides apart.

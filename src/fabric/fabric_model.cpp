@@ -292,6 +292,12 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     model.anyHinges = model.anyHinges || !plate;
     model.plate.resize(Index(model.firstVertex[c + 1]), plate ? 1 : 0);
   }
+  for (FabricHinge& hinge : model.hinges) {
+    const auto x = [&](int k) { return From<double>(model.start[Index(hinge.vertex[k])]); };
+    const auto cloth = std::upper_bound(model.firstVertex.begin(), model.firstVertex.end(), hinge.vertex[0]) - 1;
+    const bool flat = scene.cloths[Index(cloth - model.firstVertex.begin())].restAngles == RestAngles::Flat;
+    hinge.restAngle = flat ? 0 : HingeAngle(x(0), x(1), x(2), x(3));
+  }
 
   model.mass.assign(Index(model.vertexCount), 0);
   model.bending.assign(model.triangles.size(), {});

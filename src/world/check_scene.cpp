@@ -242,6 +242,9 @@ class Checker {
               ", the root of stretch_warp / stretch_weft: beyond it the cloth would gain energy by being pulled; got " +
               FormatNumber(cloth.poissonRatio));
     }
+    if (cloth.restAngles == RestAngles::Start && cloth.bendingLaw == BendingLaw::Quadratic) {
+      Warn(Path(c, "rest_angles"), "bending_law quadratic bends back to flat; set it to \"hinges\"");
+    }
     if (cloth.membraneLaw == MembraneLaw::NeoHookean && cloth.stretchWarp != cloth.stretchWeft) {
       Warn(Path(c, "membrane_law"),
            "neo_hookean has one stiffness for all directions, the mean of stretch_warp and stretch_weft");

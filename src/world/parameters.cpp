@@ -32,6 +32,7 @@ constexpr std::string_view kOrientations[] = {"horizontal", "vertical"};
 constexpr std::string_view kFabricNames[] = {"cotton", "wool",  "wool_lycra", "polyester",
                                              "silk",   "denim", "leather",    "felt"};
 constexpr std::string_view kMembraneLaws[] = {"st_venant_kirchhoff", "neo_hookean"};
+constexpr std::string_view kRestAngles[] = {"flat", "start"};
 constexpr std::string_view kBendingLaws[] = {"quadratic", "hinges"};
 
 constexpr std::span<const std::string_view> NamesOf(Engine) {
@@ -60,6 +61,9 @@ constexpr std::span<const std::string_view> NamesOf(Fabric) {
 }
 constexpr std::span<const std::string_view> NamesOf(MembraneLaw) {
   return kMembraneLaws;
+}
+constexpr std::span<const std::string_view> NamesOf(RestAngles) {
+  return kRestAngles;
 }
 constexpr std::span<const std::string_view> NamesOf(BendingLaw) {
   return kBendingLaws;
@@ -339,6 +343,8 @@ std::vector<Parameter> MakeTable() {
       .help = "st_venant_kirchhoff: warp and weft differ; neo_hookean: one stiffness, for rubber."}),
     Cloth<&C::bendingLaw>({.name = "bending_law", .label = "Bending law", .effect = kRebuild, .engine = kFabric,
       .help = "quadratic: flat at rest; hinges: by angles, for any rest shape and for folds that stay."}),
+    Cloth<&C::restAngles>({.name = "rest_angles", .label = "Rest angles", .engine = kFabric,
+      .help = "What bending_law hinges bends back to: flat, or the shape in which the cloth starts."}),
     Cloth<&C::color>({.name = "color", .label = "Colour", .min = 0, .max = 1,
       .typicalMin = 0, .typicalMax = 1, .help = "Of this cloth: red, green, blue, times the base colour of the look."}),
     Cloth<&C::backColor>({.name = "back_color", .label = "Colour of the back", .min = 0, .max = 1,

@@ -212,3 +212,33 @@ TEST_CASE("cloth that flies out of the world ends the simulation, with what to d
   CHECK(world.report().divergence->remedy.find("pin") != std::string::npos);
   for (const Vec3& x : world.Cloth(0).positions()) CHECK(std::abs(x.y) <= 1e6);
 }
+
+TEST_CASE("a folded sheet whose rest angles are those of the start stays as it is; one that is flat at rest opens") {
+  for (const RestAngles rest : {RestAngles::Start, RestAngles::Flat}) {
+    Scene scene = HangingSheet(Fabric::Leather, 9, BendingLaw::Hinges);
+    ClothSettings& cloth = scene.cloths[0];
+    cloth.width = cloth.height = 0.1;
+    cloth.pinned.clear();
+    cloth.restAngles = rest;
+    scene.simulation.gravity = {};
+    scene.wind.airDensity = 0;
+    RestMesh mesh = MakeGridMesh(cloth);
+    for (Vec3& x : mesh.positions) {  // upright beyond the middle
+      const double over = x.x - 0.05;
+      if (over > 0) x = {0.05, x.y + over, x.z};
+    }
+    const FabricModel model = BuildModel(scene, std::vector<RestMesh>{mesh});
+    ReferenceSolver solver(model);
+    const std::vector<VertexLoad> loads(mesh.positions.size());
+    const std::vector<std::uint8_t> free(mesh.positions.size(), 1);
+    solver.Begin({1, mesh.positions, mesh.positions, loads, free});
+    std::vector<Vec3> gradient(mesh.positions.size());
+    solver.Gradient(mesh.positions, gradient);
+    double greatest = 0;
+    for (const Vec3& g : gradient) greatest = std::max(greatest, Length(g));
+    if (rest == RestAngles::Start)
+      CHECK(greatest < 1e-10);
+    else
+      CHECK(greatest > 1e-3);
+  }
+}
