@@ -154,13 +154,19 @@ double Objective::MembraneEnergy(std::span<const Vec3> y) {
 }
 
 double Objective::BendingEnergy(std::span<const Vec3> y) {
-  double energy = 0.5 * Sum(model_.vertexCount, [&](int begin, int end) {
-                    double sum = 0;
-                    for (int v = begin; v < end; ++v) {
-                      if (model_.plate[Index(v)]) sum += Dot(y[Index(v)], PlateForce(y, v));
-                    }
-                    return sum;
-                  });
+  // The rows of the plates' matrix sum to zero: -½ sum over pairs of q |yi - yj|², in which only short ways cancel.
+  const ScalarMatrix& q = model_.plates;
+  double energy = -0.25 * Sum(model_.vertexCount, [&](int begin, int end) {
+    double sum = 0;
+    for (int v = begin; v < end; ++v) {
+      if (!model_.plate[Index(v)]) continue;
+      for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
+        const Vec3 way = y[Index(q.column[Index(k)])] - y[Index(v)];
+        sum += q.value[Index(k)] * Dot(way, way);
+      }
+    }
+    return sum;
+  });
   if (!model_.anyHinges) return energy;
   EvaluateHinges(y, false);
   return energy + Sum(static_cast<int>(model_.triangles.size()), [&](int begin, int end) {
@@ -173,12 +179,13 @@ double Objective::BendingEnergy(std::span<const Vec3> y) {
          });
 }
 
-/// Row v of the plates' matrix times the positions [N].
+/// Row v of the plates' matrix times the positions [N]. It sums to zero, so they may count from v: then nothing is lost
+/// of small bends far from the origin.
 Vec3 Objective::PlateForce(std::span<const Vec3> y, int v) const {
   const ScalarMatrix& q = model_.plates;
   Vec3 force;
   for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
-    force += q.value[Index(k)] * y[Index(q.column[Index(k)])];
+    force += q.value[Index(k)] * (y[Index(q.column[Index(k)])] - y[Index(v)]);
   }
   return force;
 }

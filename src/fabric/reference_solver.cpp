@@ -148,12 +148,14 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
   const ScalarMatrix& q = model_.plates;
   for (int v = 0; v < model_.vertexCount; ++v) {
     if (!model_.plate[Index(v)]) continue;
+    // Rows sum to zero: counted from v, only short ways cancel.
     Vector3<double> force;
     for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
-      force += At(y, q.column[Index(k)]) * q.value[Index(k)];
+      const Vector3<double> way = At(y, q.column[Index(k)]) - At(y, v);
+      force += way * q.value[Index(k)];
+      sum -= 0.25 * q.value[Index(k)] * Dot(way, way);
       block(v, q.column[Index(k)], Diagonal(q.value[Index(k)]));
     }
-    sum += 0.5 * Dot(At(y, v), force);
     addGradient(v, force);
   }
   if (energy) *energy = sum;

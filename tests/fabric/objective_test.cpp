@@ -95,3 +95,27 @@ TEST_CASE("the gradient is the derivative of the energy, term by term and all to
     }
   }
 }
+
+TEST_CASE("a small bend costs the same far from the origin") {
+  Scene scene;
+  scene.simulation.engine = Engine::Fabric;
+  ClothSettings& cloth = scene.cloths.emplace_back();
+  SetFabric(cloth, Fabric::Denim);
+  cloth.numWidthPoints = 101, cloth.numHeightPoints = 3;
+  cloth.width = 1, cloth.height = 0.02;
+  cloth.poissonRatio = 0;
+  const std::vector<RestMesh> meshes = {MakeGridMesh(cloth)};
+  const FabricModel model = BuildModel(scene, meshes);
+  const BlockPattern pattern = MakePattern(model.vertexCount, model.triangles);
+  const Executor executor(1);
+  Objective objective(model, pattern, executor);
+  // A sag of 0.1 mm: ½ B κ² times the area.
+  constexpr double kCurvature = 8e-4;  // 1/m
+  std::vector<Vec3> y;
+  for (const Vec3& x : model.start) y.push_back(x + Vec3{0, 0.5 * kCurvature * x.x * x.x, 0});
+  const double near = objective.ElasticEnergy(y);
+  for (Vec3& x : y) x += Vec3{1000, -300, 50};
+  CHECK(objective.ElasticEnergy(y) == doctest::Approx(near).epsilon(1e-3));
+  CHECK(near ==
+        doctest::Approx(0.5 * cloth.bendWarp * kCurvature * kCurvature * cloth.width * cloth.height).epsilon(0.05));
+}
