@@ -1,6 +1,7 @@
 #include "fabric/fabric_engine.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -17,6 +18,10 @@ constexpr double kSkinDrag = 0.01;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
+}
+
+bool InBounds(const Vec3& x) {
+  return std::abs(x.x) <= kBound && std::abs(x.y) <= kBound && std::abs(x.z) <= kBound;
 }
 
 }  // namespace
@@ -60,13 +65,13 @@ void FabricEngine::MoveColliders(double time) {
 
 bool FabricEngine::ApplyForces(double time, std::span<const Gust> gusts, std::span<const Handle> handles) {
   const Vec3 fall = scene_.simulation.gravity * (h_ * h_);
-  bool inBounds = true;
-  for (std::size_t v = 0; v < position_.size(); ++v) {
+  std::atomic<bool> inBounds = true;
+  ForRange(executor_, position_.size(), [&](int vertex) {
+    const std::size_t v = Index(vertex);
     predicted_[v] = position_[v] + (position_[v] - previous_[v]) + fall;
     loads_[v] = {};
-    inBounds = inBounds && std::abs(predicted_[v].x) <= kBound && std::abs(predicted_[v].y) <= kBound &&
-               std::abs(predicted_[v].z) <= kBound;
-  }
+    if (!InBounds(predicted_[v])) inBounds = false;
+  });
   Blow(time, gusts);
   Hold(handles);
   return inBounds;
@@ -125,22 +130,28 @@ void FabricEngine::Hold(std::span<const Handle> handles) {
 }
 
 void FabricEngine::Solve() {
-  for (std::size_t v = 0; v < position_.size(); ++v) {
-    next_[v] = position_[v] + (position_[v] - previous_[v]);
+  // Inertia may lead into much strain: then the better start is where the cloth is.
+  ForRange(executor_, position_.size(), [&](int v) {
+    next_[Index(v)] = position_[Index(v)];
+    previous_[Index(v)] = position_[Index(v)] + (position_[Index(v)] - previous_[Index(v)]);
+  });
+  std::vector<Vec3>& ahead = previous_;
+  for (const Pin& pin : pins_.All()) {
+    next_[Index(pin.point)] = ahead[Index(pin.point)] = predicted_[Index(pin.point)] = pin.target;
   }
-  for (const Pin& pin : pins_.All()) next_[Index(pin.point)] = predicted_[Index(pin.point)] = pin.target;
   Objective& objective = solver_.objective();
   objective.Begin({.h = h_, .start = position_, .predicted = predicted_, .loads = loads_, .free = free_});
-  // Inertia may lead into much strain: then the better start is where the cloth is.
-  std::swap(previous_, next_);
-  const double ahead = objective.Energy(previous_);
-  next_ = position_;
-  for (const Pin& pin : pins_.All()) next_[Index(pin.point)] = pin.target;
-  if (ahead < objective.Energy(next_)) std::swap(previous_, next_);
+  const double here = objective.Energy(next_);
+  double energy = objective.Energy(ahead);
+  if (energy < here)
+    std::swap(ahead, next_);
+  else
+    energy = objective.Energy(next_);
   const SimulationSettings& settings = scene_.simulation;
-  const NewtonResult result = solver_.Solve(next_, {.maxIterations = settings.newtonIterations,
-                                                    .maxLinearIterations = settings.linearIterations,
-                                                    .tolerance = settings.tolerance});
+  const NewtonResult result = solver_.Solve(next_, energy,
+                                            {.maxIterations = settings.newtonIterations,
+                                             .maxLinearIterations = settings.linearIterations,
+                                             .tolerance = settings.tolerance});
   counts_.newtonIterations += result.iterations;
   counts_.linearIterations += result.linearIterations;
   counts_.residual = std::max(counts_.residual, result.residual);
@@ -235,9 +246,7 @@ std::span<const double> FabricEngine::Masses(int cloth) const {
 
 VertexRef FabricEngine::FindOutOfBounds() const {
   for (int v = 0; v < model_.vertexCount; ++v) {
-    for (const Vec3& x : {position_[Index(v)], predicted_[Index(v)]}) {
-      if (!(std::abs(x.x) <= kBound && std::abs(x.y) <= kBound && std::abs(x.z) <= kBound)) return RefOf(v);
-    }
+    if (!InBounds(position_[Index(v)]) || !InBounds(predicted_[Index(v)])) return RefOf(v);
   }
   return {};
 }

@@ -41,6 +41,7 @@ NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
   trial_.resize(Index(model.vertexCount));
   right_.assign(VectorLength(model.vertexCount), 0);
   direction_.assign(VectorLength(model.vertexCount), 0);
+  chunkSums_.resize(Index(Chunks(model.vertexCount)));
 }
 
 void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
@@ -52,32 +53,26 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
   conjugateGradient_.SetUp(model_.vertexCount);
 }
 
-NewtonResult NewtonSolver::Solve(std::span<Vec3> y, const NewtonSettings& settings) {
+NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonSettings& settings) {
   NewtonResult result;
-  double energy = objective_.Energy(y), first = 0;
+  double first = 0;
   while (result.iterations < settings.maxIterations) {
     objective_.GradientAndTangent(y, gradient_, matrix_);
     if (result.iterations == 0) multigrid_.Refill(matrix_, executor_);
-    for (int v = 0; v < model_.vertexCount; ++v) {
+    ForRange(executor_, y.size(), [&](int v) {
       Real* r = &right_[3 * Index(v)];
       const Vec3& g = gradient_[Index(v)];
       r[0] = static_cast<Real>(-g.x), r[1] = static_cast<Real>(-g.y), r[2] = static_cast<Real>(-g.z);
-    }
+    });
     const SolveResult linear = conjugateGradient_.Solve(
         matrix_, multigrid_, right_.data(), direction_.data(),
         {.maxIterations = settings.maxLinearIterations, .tolerance = kLinearTolerance}, executor_);
     result.linearIterations += linear.iterations;
-    double slope = 0, square = 0;
-    for (int v = 0; v < model_.vertexCount; ++v) {
-      const Real* d = &direction_[3 * Index(v)];
-      const Vec3 way{d[0], d[1], d[2]};
-      slope += Dot(gradient_[Index(v)], way);
-      square += Dot(way, way);
-    }
+    const auto [slope, square] = MeasureDirection();
     if (!(slope < 0)) break;
     const double alpha = SearchLine(y, energy, slope);
     if (alpha == 0) break;
-    std::copy(trial_.begin(), trial_.end(), y.begin());
+    ForRange(executor_, y.size(), [&](int v) { y[Index(v)] = trial_[Index(v)]; });
     energy = trialEnergy_;
     ++result.iterations;
     const double length = alpha * std::sqrt(square / model_.vertexCount);
@@ -92,14 +87,31 @@ NewtonResult NewtonSolver::Solve(std::span<Vec3> y, const NewtonSettings& settin
   return result;
 }
 
+/// The slope of the energy along the direction, and the square of its length.
+std::array<double, 2> NewtonSolver::MeasureDirection() {
+  executor_.ForChunks(static_cast<int>(chunkSums_.size()), [&](int chunk) {
+    std::array<double, 2> sums{};
+    for (int v = chunk * kRowsPerChunk; v < std::min((chunk + 1) * kRowsPerChunk, model_.vertexCount); ++v) {
+      const Real* d = &direction_[3 * Index(v)];
+      const Vec3 way{d[0], d[1], d[2]};
+      sums[0] += Dot(gradient_[Index(v)], way);
+      sums[1] += Dot(way, way);
+    }
+    chunkSums_[Index(chunk)] = sums;
+  });
+  std::array<double, 2> sums{};
+  for (const std::array<double, 2>& part : chunkSums_) sums[0] += part[0], sums[1] += part[1];
+  return sums;
+}
+
 /// Halves the step from 1 on until it gains enough; leaves where it leads in trial_. Returns 0 where nothing gains.
 double NewtonSolver::SearchLine(std::span<const Vec3> y, double energy, double slope) {
   double alpha = 1;
   for (int halving = 0; halving <= kMostHalvings; ++halving, alpha /= 2) {
-    for (int v = 0; v < model_.vertexCount; ++v) {
+    ForRange(executor_, y.size(), [&](int v) {
       const Real* d = &direction_[3 * Index(v)];
       trial_[Index(v)] = y[Index(v)] + Vec3{d[0], d[1], d[2]} * alpha;
-    }
+    });
     trialEnergy_ = objective_.Energy(trial_);
     if (trialEnergy_ <= energy + kSufficient * alpha * slope) return alpha;
   }

@@ -3,6 +3,7 @@
 /// The solver that keeps up with real time: Newton's method on the incremental potential, its linear systems by
 /// conjugate gradients with multigrid, each step checked against the energy. docs/solver.md says why this one.
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -37,10 +38,12 @@ class NewtonSolver {
 
   Objective& objective() { return objective_; }
 
-  /// Goes from y down in energy, at most to the minimum. The objective must have begun the step.
-  NewtonResult Solve(std::span<Vec3> y, const NewtonSettings& settings);
+  /// Goes from y down in energy, at most to the minimum. The objective must have begun the step; `energy` is what it
+  /// gave for y, when it was asked last.
+  NewtonResult Solve(std::span<Vec3> y, double energy, const NewtonSettings& settings);
 
  private:
+  std::array<double, 2> MeasureDirection();
   double SearchLine(std::span<const Vec3> y, double energy, double slope);
 
   const FabricModel& model_;
@@ -53,6 +56,7 @@ class NewtonSolver {
   std::vector<Vec3> gradient_, trial_;
   RealVector right_, direction_;
   double trialEnergy_ = 0;
+  std::vector<std::array<double, 2>> chunkSums_;
 };
 
 }  // namespace percale::fabric

@@ -48,6 +48,7 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
   angle_.resize(model.hinges.size());
   moment_.resize(model.hinges.size());
   hinge_.resize(model.hinges.size());
+  plateForce_.resize(static_cast<std::size_t>(model.vertexCount));
   const auto items = std::max(static_cast<std::size_t>(model.vertexCount), triangles);
   chunkSums_.resize(std::max(batches_.size(), items / kRowsPerChunk + 1));
 }
@@ -154,19 +155,7 @@ double Objective::MembraneEnergy(std::span<const Vec3> y) {
 }
 
 double Objective::BendingEnergy(std::span<const Vec3> y) {
-  // The rows of the plates' matrix sum to zero: -½ sum over pairs of q |yi - yj|², in which only short ways cancel.
-  const ScalarMatrix& q = model_.plates;
-  double energy = -0.25 * Sum(model_.vertexCount, [&](int begin, int end) {
-    double sum = 0;
-    for (int v = begin; v < end; ++v) {
-      if (!model_.plate[Index(v)]) continue;
-      for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
-        const Vec3 way = y[Index(q.column[Index(k)])] - y[Index(v)];
-        sum += q.value[Index(k)] * Dot(way, way);
-      }
-    }
-    return sum;
-  });
+  const double energy = PlateEnergy(y);
   if (!model_.anyHinges) return energy;
   EvaluateHinges(y, false);
   return energy + Sum(static_cast<int>(model_.triangles.size()), [&](int begin, int end) {
@@ -179,15 +168,25 @@ double Objective::BendingEnergy(std::span<const Vec3> y) {
          });
 }
 
-/// Row v of the plates' matrix times the positions [N]. It sums to zero, so they may count from v: then nothing is lost
-/// of small bends far from the origin.
-Vec3 Objective::PlateForce(std::span<const Vec3> y, int v) const {
+/// Also what pulls at each vertex: its row of the plates' matrix times the positions. Rows sum to zero, so positions
+/// may count from the vertex itself, and the energy is -½ sum over pairs of q |yi - yj|²: only short ways cancel, and
+/// small bends count far from the origin.
+double Objective::PlateEnergy(std::span<const Vec3> y) {
   const ScalarMatrix& q = model_.plates;
-  Vec3 force;
-  for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
-    force += q.value[Index(k)] * (y[Index(q.column[Index(k)])] - y[Index(v)]);
-  }
-  return force;
+  return -0.25 * Sum(model_.vertexCount, [&](int begin, int end) {
+    double sum = 0;
+    for (int v = begin; v < end; ++v) {
+      if (!model_.plate[Index(v)]) continue;
+      Vec3 force;
+      for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
+        const Vec3 way = y[Index(q.column[Index(k)])] - y[Index(v)];
+        force += q.value[Index(k)] * way;
+        sum += q.value[Index(k)] * Dot(way, way);
+      }
+      plateForce_[Index(v)] = force;
+    }
+    return sum;
+  });
 }
 
 /// The angles of all hinges, and how they change with the positions.
@@ -240,6 +239,7 @@ void Objective::AddPressure(std::span<const Vec3> y, const Batch& batch) {
 
 void Objective::Gradient(std::span<const Vec3> y, std::span<Vec3> gradient) {
   EvaluateTriangles(y, false);
+  PlateEnergy(y);
   Gather(y, gradient);
 }
 
@@ -295,9 +295,8 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient) {
     for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
       sum += triangleGradient_[Index(model_.corners.entry[Index(e)])];
     }
-    if (model_.plate[Index(v)]) {
-      sum += PlateForce(y, v);
-    } else {
+    sum += plateForce_[Index(v)];
+    if (!model_.plate[Index(v)]) {
       for (std::int32_t e = model_.hingeEnds.first[Index(v)]; e < model_.hingeEnds.first[Index(v) + 1]; ++e) {
         const std::int32_t end = model_.hingeEnds.entry[Index(e)];
         sum += ToVec3(hinge_[Index(end / 4)].gradient[end % 4] * moment_[Index(end / 4)]);

@@ -45,7 +45,8 @@ class Objective {
   double Energy(std::span<const Vec3> y);
   /// Its derivative [N]; zero at pins.
   void Gradient(std::span<const Vec3> y, std::span<Vec3> gradient);
-  /// The same, and the blocks of a second derivative with eigenvalues bounded from below as solver.md says.
+  /// The same where Energy was asked for last, and the blocks of a second derivative with eigenvalues bounded from
+  /// below as solver.md says.
   void GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix);
 
   /// Of membrane and bending alone [J].
@@ -60,7 +61,7 @@ class Objective {
   double MembraneEnergy(std::span<const Vec3> y);
   double BendingEnergy(std::span<const Vec3> y);
   BendingMoments<double> Bend(int triangle) const;
-  Vec3 PlateForce(std::span<const Vec3> y, int vertex) const;
+  double PlateEnergy(std::span<const Vec3> y);
   void FindParts();
   MembraneArgs Arguments(std::span<const Vec3> y, int batch);
   void EvaluateTriangles(std::span<const Vec3> y, bool withTangent);
@@ -84,6 +85,7 @@ class Objective {
   // Per hinge:
   std::vector<double> startAngle_, angle_, moment_;
   std::vector<Hinge<double>> hinge_;
+  std::vector<Vec3> plateForce_;  // per vertex, where PlateEnergy was called last; zero where hinges bend [N]
   std::vector<double> chunkSums_;
 };
 

@@ -1,4 +1,4 @@
-// A warmed-up solve does not allocate, refilling included.
+// A warmed-up solve does not allocate, refilling included, and neither does a step.
 
 #include <doctest/doctest.h>
 
@@ -6,6 +6,8 @@
 #include "fabric/conjugate_gradient.h"
 #include "fabric/multigrid.h"
 #include "fabric/prolongation.h"
+#include "percale/fabrics.h"
+#include "percale/world.h"
 #include "tests/count_allocations.h"
 #include "tests/fabric/sheet.h"
 
@@ -39,4 +41,26 @@ TEST_CASE("a solve does not allocate, not even the first; contacts do when there
           solve({});
           solve(many);
         }) == 0);
+}
+
+TEST_CASE("a warmed-up step on one thread does not allocate, whatever the laws") {
+  for (const BendingLaw bending : {BendingLaw::Quadratic, BendingLaw::Hinges}) {
+    for (const MembraneLaw membrane : {MembraneLaw::StVenantKirchhoff, MembraneLaw::NeoHookean}) {
+      Scene scene;
+      scene.simulation.engine = Engine::Fabric;
+      ClothSettings& cloth = scene.cloths.emplace_back();
+      SetFabric(cloth, Fabric::Cotton);
+      cloth.numWidthPoints = cloth.numHeightPoints = 20;
+      cloth.pinned = {{0, 0}};
+      cloth.bendingLaw = bending;
+      cloth.membraneLaw = membrane;
+      cloth.pressure = 1;
+      World world(scene, {.threads = 1});
+      world.Step();
+      CHECK(CountAllocations([&] {
+              for (int frame = 0; frame < 3; ++frame) world.Step();
+            }) == 0);
+      CHECK(!world.report().divergence);
+    }
+  }
 }
