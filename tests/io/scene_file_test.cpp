@@ -54,7 +54,7 @@ TEST_CASE("Every scene of the project loads without a word") {
     CHECK_MESSAGE(scene.diagnostics().empty(), Format(scene.diagnostics()));
     if (!scene) continue;
     CHECK(scene->name == entry.path().string());
-    const Result<Scene> again = ParseScene(FormatScene(*scene), "again");
+    const Result<Scene> again = ParseScene(FormatScene(*scene), "scene/again");
     REQUIRE_MESSAGE(again.ok(), Format(again.diagnostics()));
     CHECK(Same(*scene, *again));
     const bool ofTheCourse =

@@ -139,8 +139,11 @@ TEST_CASE("A mesh that cannot be used is told at its own place and at the scene'
   CHECK_FALSE(Contains(folder.Problems("\"meshes/none.obj\"", ", \"patch\": {\"group\": \"x\"}"), "/patch"));
   CHECK_FALSE(Contains(folder.Problems("5"), "is not loaded"));
   // The engine springs does not look at it.
-  std::string problems =
-      Format(ParseScene("{\"cloth\": {\"shape\": \"mesh\", \"mesh\": \"a.obj\"}}", "b").diagnostics());
+  Scene springs = test::OneOfEach();
+  springs.patches.clear();
+  std::string text = FormatScene(springs);
+  text.insert(text.find("\"width\""), "\"shape\": \"mesh\", \"mesh\": \"a.obj\", ");
+  const std::string problems = Format(ParseScene(text, "b").diagnostics());
   CHECK(Contains(problems, "error: /cloth/shape: expected \"grid\", the one shape of the engine springs"));
   CHECK_FALSE(Contains(problems, "a.obj:"));
 }
