@@ -11,14 +11,15 @@
 #include "apps/cli/figure_table.h"
 #include "apps/cli/options.h"
 #include "apps/cli/session.h"
+#include "apps/cli/verify_cases.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
 
 namespace percale::cli {
 namespace {
 
-constexpr std::string_view kVerbs[] = {"view",  "simulate", "shot",   "render", "figures", "replay",
-                                       "check", "info",     "doctor", "bench",  "version"};
+constexpr std::string_view kVerbs[] = {"view",  "simulate", "shot", "render", "figures", "replay",
+                                       "check", "verify",   "info", "doctor", "bench",   "version"};
 
 constexpr int kMostFrames = 100'000'000;
 constexpr double kLongestTime = 1e6;  // s
@@ -81,6 +82,26 @@ std::vector<std::string> Split(const std::string& text, char separator) {
       parts.back() += c;
   }
   return parts;
+}
+
+std::vector<std::string_view> CaseNames() {
+  std::vector<std::string_view> names;
+  for (const VerifyCase& each : VerifyCases()) names.push_back(each.name);
+  return names;
+}
+
+/// The words after `lead`, in lines of at most 100 characters.
+std::string Wrapped(const std::string& lead, const std::vector<std::string_view>& words) {
+  std::string text, line = lead;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string word = std::string(words[i]) + (i + 1 < words.size() ? ", " : "\n");
+    if (line.size() + word.size() > 100) {
+      text += line + "\n";
+      line.clear();
+    }
+    line += word;
+  }
+  return text + line;
 }
 
 /// Adds the options of each kind to a verb. All verbs write into the same Options.
@@ -253,8 +274,8 @@ class Builder {
     app.add_flag("--wireframe", options_.wireframe, "Draws the springs over the surface as well")->group("Picture");
   }
 
-  void Folder(CLI::App& app) {
-    Call(app, "-o", "The folder to write into; default: figures", "DIR", "Output", [this](const std::string& text) {
+  void Folder(CLI::App& app, const std::string& standard) {
+    Call(app, "-o", "The folder to write into; default: " + standard, "DIR", "Output", [this](const std::string& text) {
       if (text.empty()) Refuse("-o", "the name of a folder", text);
       options_.output = text;
     });
@@ -276,6 +297,17 @@ class Builder {
              for (int figure = first; figure <= last; ++figure) figures.insert(figure);
            }
            options_.figures.assign(figures.begin(), figures.end());
+         });
+  }
+
+  void Cases(CLI::App& app) {
+    Call(app, "--only", "Which cases to run, such as cantilever,catenary; default: all", "NAME,...", "Options",
+         [this](const std::string& text) {
+           const std::vector<std::string_view> names = CaseNames();
+           std::set<std::size_t> wanted;
+           for (const std::string& part : Split(text, ',')) wanted.insert(Find("--only", "case", part, names));
+           options_.cases.clear();
+           for (const std::size_t at : wanted) options_.cases.emplace_back(names[at]);
          });
   }
 
@@ -364,9 +396,9 @@ class Builder {
 };
 
 void AddVerbs(CLI::App& app, Builder& builder) {
-  const auto verb = [&](Verb v, const char* summary, const char* examples) -> CLI::App& {
+  const auto verb = [&](Verb v, const char* summary, const std::string& examples) -> CLI::App& {
     CLI::App* sub = app.add_subcommand(std::string(VerbName(v)), summary);
-    sub->footer(std::string("Examples:\n") + examples + "\n" + kExitCodes);
+    sub->footer("Examples:\n" + examples + "\n" + kExitCodes);
     sub->group("Verbs");
     sub->callback([&builder, v] { builder.options().verb = v; });
     return *sub;
@@ -448,7 +480,7 @@ void AddVerbs(CLI::App& app, Builder& builder) {
       "Writes figure_01.png to figure_49.png, index.html (one page that holds all of it) and figures.json. What is\n"
       "in the folder already and would come out the same is kept. Claims are judged once all figures are there.\n");
   figures.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR")->group("Output");
-  builder.Folder(figures);
+  builder.Folder(figures, "figures");
   builder.Only(figures);
   builder.Size(figures);
   builder.Threads(figures, "Output");
@@ -459,6 +491,22 @@ void AddVerbs(CLI::App& app, Builder& builder) {
                          "  percale check --schema > percale.schema.json      for editors\n");
   builder.Scene(check, true);
   check.add_flag("--schema", builder.options().schema, "Prints the JSON schema of scene files, and ends");
+
+  CLI::App& verify = verb(Verb::Verify, "Measures the fabric engine against closed forms of mechanics",
+                          "  percale verify\n"
+                          "  percale verify --only cantilever,catenary -o report\n"
+                          "  percale verify --fine                               how the errors shrink; minutes\n"
+                          "  percale verify --json > physics.json\n"
+                          "Prints case, measured, expected, error, gate and verdict, and writes verify.html, one page\n"
+                          "with plots. A gate that does not hold makes the exit code 1.\n" +
+                              Wrapped("The cases: ", CaseNames()));
+  builder.Folder(verify, "verify");
+  builder.Cases(verify);
+  verify.add_flag("--fine", builder.options().fine, "Runs cases again with finer meshes and shorter steps")
+      ->group("Options");
+  verify.add_flag("--json", builder.options().json, "One JSON object instead of the table")->group("Options");
+  builder.Threads(verify, "Options");
+  builder.Progress(verify);
 
   CLI::App& info = verb(Verb::Info, "Tells what scenes or caches hold",
                         "  percale info scene/pinned2.json\n"

@@ -27,6 +27,8 @@ int RunVerb(const Options& options) {
       return Figures(options);
     case Verb::Check:
       return Check(options);
+    case Verb::Verify:
+      return Verify(options);
     case Verb::Info:
       return Info(options);
     case Verb::Doctor:

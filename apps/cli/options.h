@@ -24,7 +24,7 @@ enum ExitCode : int {
   kInterrupted = 130  ///< Ctrl+C; what was done is kept.
 };
 
-enum class Verb { View, Simulate, Shot, Render, Figures, Replay, Check, Info, Doctor, Bench, Version };
+enum class Verb { View, Simulate, Shot, Render, Figures, Replay, Check, Verify, Info, Doctor, Bench, Version };
 enum class ProgressKind { Automatic, Bar, Json, None };
 
 /// A parameter of a shader from the command line.
@@ -80,10 +80,13 @@ struct Options {
 
   std::vector<int> figures;  ///< figures --only, ascending; empty: all.
 
+  std::vector<std::string> cases;  ///< verify --only, in the order of the list; empty: all.
+  bool fine = false;               ///< verify --fine
+
   bool schema = false;     ///< check --schema
   std::string benchmark;   ///< bench NAME; empty: springs.
   std::vector<int> sizes;  ///< bench --sizes
-  bool json = false;       ///< bench --json
+  bool json = false;       ///< bench --json, verify --json
 };
 
 /// Reads the command line, UTF-8, without the program's name. Help and version are printed to
