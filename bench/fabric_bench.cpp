@@ -76,7 +76,9 @@ double Median(std::vector<double> values) {
 template <class Frame, class Positions>
 Run Measure(const std::string& method, const std::string& setting, const FabricModel& model, int frames, Frame&& frame,
             Positions&& positions) {
-  Run run{method, setting};
+  Run run;
+  run.method = method;
+  run.setting = setting;
   std::vector<double> times;
   for (int f = 0; f < frames; ++f) {
     const auto start = std::chrono::steady_clock::now();

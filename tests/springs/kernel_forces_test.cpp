@@ -142,23 +142,23 @@ std::string StepFault(Sheet& s, const Axes& expected, int rowBegin, int rowEnd) 
   return "";
 }
 
-enum class Shape { Cloth, Coincident, Short, Extreme };
+enum class SheetShape { Cloth, Coincident, Short, Extreme };
 
 /// Fills a sheet's state.
-void Scatter(Sheet& s, Shape shape, SplitMix64& random) {
+void Scatter(Sheet& s, SheetShape shape, SplitMix64& random) {
   constexpr double kSpacing = 0.02;
   // Squares underflow to zero, to denormal numbers, to less than what the quick root takes, and overflow.
   constexpr double kLengths[] = {0, 1e-200, 1e-160, 3e-155, 1e-140, -1e-200, -1e-160, 1, -0.0, 1e150, 1e160, -1e160};
-  const std::size_t lengths = shape == Shape::Short ? 9 : std::size(kLengths);
+  const std::size_t lengths = shape == SheetShape::Short ? 9 : std::size(kLengths);
   const auto noise = [&] { return 2 * random.NextUnit() - 1; };
   for (int p = 0; p < s.count; ++p) {
     for (int axis = 0; axis < 3; ++axis) {
       double& x = s.x(axis, p);
       switch (shape) {
-        case Shape::Cloth:
+        case SheetShape::Cloth:
           x = kSpacing * (axis == 0 ? p % s.numWidth : axis == 1 ? p / s.numWidth : 0) + 0.3 * kSpacing * noise();
           break;
-        case Shape::Coincident:
+        case SheetShape::Coincident:
           x = kSpacing * static_cast<double>(random.Next() % 2);
           break;
         default:
@@ -181,11 +181,11 @@ TEST_CASE("a step of all rows, and of any of them, is the plain one to the last 
   for (int width = 2; width <= 20; ++width) widths.push_back(width);
   for (const int numWidth : widths) {
     for (int numHeight = 2; numHeight <= 9; ++numHeight) {
-      for (const Shape shape : {Shape::Cloth, Shape::Coincident, Shape::Short, Shape::Extreme}) {
+      for (const SheetShape shape : {SheetShape::Cloth, SheetShape::Coincident, SheetShape::Short, SheetShape::Extreme}) {
         Sheet s(numWidth, numHeight);
         Scatter(s, shape, random);
         s.windy = random.Next() % 2 == 0;
-        if (shape != Shape::Extreme) {  // what overflows is not a number, enabled or not
+        if (shape != SheetShape::Extreme) {  // what overflows is not a number, enabled or not
           const std::uint64_t share = 1 + random.Next() % 6;
           for (double& k : s.stiffness) k = random.Next() % share == 0 ? 0 : k;
         }
@@ -210,7 +210,7 @@ TEST_CASE("one row alone is a sheet as well") {
   for (int numWidth = 2; numWidth <= 40; ++numWidth) {
     CAPTURE(numWidth);
     Sheet s(numWidth, 1);
-    Scatter(s, Shape::Cloth, random);
+    Scatter(s, SheetShape::Cloth, random);
     REQUIRE(StepFault(s, ReferenceStep(s), 0, 1) == "");
   }
 }
@@ -230,7 +230,7 @@ TEST_CASE("no mass, no damping, no springs: each by itself") {
   for (const int numWidth : {3, 7, 8, 21}) {
     for (int which = 0; which < 4; ++which) {
       Sheet s(numWidth, 6);
-      Scatter(s, Shape::Cloth, random);
+      Scatter(s, SheetShape::Cloth, random);
       if (which == 0) s.forceToWay = 0;
       if (which == 1) s.keep = 1;
       if (which == 2) s.keep = 0;
