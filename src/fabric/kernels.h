@@ -54,6 +54,26 @@ struct AssembleArgs {
   Real* blocks;         ///< Out.
 };
 
+/// Some rows of a SystemMatrix and vectors over all rows. Arrays are from the first row or block of all on.
+struct RowsArgs {
+  int begin, end;
+  const std::int32_t* first;   ///< As in BlockPattern.
+  const std::int32_t* column;  ///< As in BlockPattern.
+  const Real* blocks;          ///< Nine per block, column by column; one more can be read at the end.
+  const std::int32_t* restFirst;
+  const std::int32_t* restColumn;
+  const Real* restValue;  ///< Scalars outside the pattern, in compressed rows.
+  const std::int32_t* extraBegin;
+  const std::int32_t* extraEnd;
+  const std::int32_t* extraColumn;
+  const Real* extraBlocks;  ///< As in ExtraRows; null where there are none.
+  const Real* inverse;      ///< Per row the inverse of its block on the diagonal, as `blocks`. For `smooth`.
+  Real omega;               ///< For `smooth`.
+  const Real* right;        ///< b. For `residual` and `smooth`.
+  const Real* x;
+  Real* y;  ///< Out; no other vector.
+};
+
 struct Kernels {
   const char* name;
   /// Writes startStrain.
@@ -67,6 +87,12 @@ struct Kernels {
   /// Writes the blocks. What a membrane does to a vertex and to its neighbours adds up to nothing, as no translation
   /// strains it: so the block on the diagonal follows from the others.
   void (*assemble)(const AssembleArgs&);
+  /// y = H x; returns x'y.
+  double (*multiply)(const RowsArgs&);
+  /// y = b - H x
+  void (*residual)(const RowsArgs&);
+  /// y = x + omega D^-1 (b - H x)
+  void (*smooth)(const RowsArgs&);
 };
 
 /// All that the processor can run, the plain ones first and the fastest last.

@@ -5,6 +5,10 @@
 #include "fabric/kernels.h"
 #include "math/pack.h"
 
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
 namespace percale::fabric::PERCALE_KERNELS {
 
 struct Level;
@@ -19,11 +23,19 @@ using Floats = Pack<float, kLanes, Level>;
 
 #include "fabric/kernel_assemble.h"
 #include "fabric/kernel_membrane.h"
+#include "fabric/kernel_rows.h"
 
 extern const Kernels kKernels;
 const Kernels kKernels = {
-    PERCALE_KERNELS_NAME,       MembraneStrains,           MembraneEnergy,
-    MembraneDerivatives<false>, MembraneDerivatives<true>, Assemble,
+    .name = PERCALE_KERNELS_NAME,
+    .membraneStrain = MembraneStrains,
+    .membraneEnergy = MembraneEnergy,
+    .membraneGradient = MembraneDerivatives<false>,
+    .membraneTangent = MembraneDerivatives<true>,
+    .assemble = Assemble,
+    .multiply = Multiply,
+    .residual = Residual,
+    .smooth = Smooth,
 };
 
 }  // namespace percale::fabric::PERCALE_KERNELS

@@ -13,31 +13,6 @@ namespace {
 /// Pivots of a diagonal block below this share of its trace are rounding of floats.
 constexpr double kLeastPivot = 1e-7;
 
-/// Calls store(row, H x at that row) for each row of a range.
-template <class Store>
-inline void ForRows(const BlockPattern& pattern, const Real* __restrict blocks,
-                    const std::int32_t* __restrict restFirst, const std::int32_t* __restrict restColumn,
-                    const Real* __restrict restValue, const ExtraRows& extra, const Real* __restrict x, int begin,
-                    int end, Store&& store) {
-  const std::int32_t* __restrict first = pattern.first.data();
-  const std::int32_t* __restrict column = pattern.column.data();
-  for (int row = begin; row < end; ++row) {
-    Real4 s = Real4::Zero();
-    for (std::int32_t k = first[row]; k < first[row + 1]; ++k) {
-      s += Product(blocks + 9 * static_cast<std::size_t>(k), x + 3 * static_cast<std::size_t>(column[k]));
-    }
-    for (std::int32_t k = restFirst[row]; k < restFirst[row + 1]; ++k) {
-      s += Real4::Load(x + 3 * static_cast<std::size_t>(restColumn[k])) * restValue[k];
-    }
-    if (extra.any) {
-      for (std::int32_t k = extra.begin[row]; k < extra.end[row]; ++k) {
-        s += Product(&extra.block[9 * static_cast<std::size_t>(k)], x + 3 * static_cast<std::size_t>(extra.column[k]));
-      }
-    }
-    store(row, s);
-  }
-}
-
 /// Inverts a symmetric block.
 void Invert(const std::array<Real, 9>& block, Real* inverse) {
   const double a = block[0], b = block[4], c = block[8];
@@ -241,12 +216,11 @@ void SystemMatrix::SetExtra(std::span<const ExtraBlock> blocks, const Executor& 
 
 void SystemMatrix::Finish(const Executor& executor) {
   for (const std::int32_t k : cleared_) std::fill_n(Block(k), 9, Real{0});
-  for (int row = 0; row < static_cast<int>(pinned_.size()); ++row) {
-    if (!pinned_[row]) continue;
-    for (const int c : {0, 4, 8}) Block(diagonal_[row])[c] = 1;
-  }
   executor.ForChunks(Chunks(rows()), [&](int chunk) {
     for (int row = chunk * kRowsPerChunk; row < std::min(rows(), (chunk + 1) * kRowsPerChunk); ++row) {
+      if (Pinned(row)) {
+        for (const int c : {0, 4, 8}) Block(diagonal_[row])[c] = 1;
+      }
       Invert(Diagonal(row), &inverse_[9 * static_cast<std::size_t>(row)]);
     }
   });
@@ -263,31 +237,32 @@ std::array<Real, 9> SystemMatrix::Diagonal(int row) const {
   return sum;
 }
 
+RowsArgs SystemMatrix::Rows(int chunk, const Real* x, Real* y) const {
+  return {.begin = chunk * kRowsPerChunk,
+          .end = std::min(rows(), (chunk + 1) * kRowsPerChunk),
+          .first = pattern_.first.data(),
+          .column = pattern_.column.data(),
+          .blocks = blocks_.data(),
+          .restFirst = restFirst_.data(),
+          .restColumn = restColumn_.data(),
+          .restValue = restValue_.data(),
+          .extraBegin = extra_.begin.data(),
+          .extraEnd = extra_.end.data(),
+          .extraColumn = extra_.column.data(),
+          .extraBlocks = extra_.any ? extra_.block.data() : nullptr,
+          .inverse = inverse_.data(),
+          .omega = 0,
+          .right = nullptr,
+          .x = x,
+          .y = y};
+}
+
 void SystemMatrix::Multiply(const Real* x, Real* y, const Executor& executor) const {
-  executor.ForChunks(Chunks(rows()), [&](int chunk) {
-    Real* __restrict out = y;
-    ForRows(pattern_, blocks_.data(), restFirst_.data(), restColumn_.data(), restValue_.data(), extra_, x,
-            chunk * kRowsPerChunk, std::min(rows(), (chunk + 1) * kRowsPerChunk),
-            [&](int row, Real4 s) { Store3(s, out + 3 * static_cast<std::size_t>(row)); });
-  });
+  executor.ForChunks(Chunks(rows()), [&](int chunk) { kernels_->multiply(Rows(chunk, x, y)); });
 }
 
 double SystemMatrix::MultiplyDot(const Real* x, Real* y, std::span<double> chunkSums, const Executor& executor) const {
-  executor.ForChunks(Chunks(rows()), [&](int chunk) {
-    Real* __restrict out = y;
-    double sum = 0;
-    ForRows(pattern_, blocks_.data(), restFirst_.data(), restColumn_.data(), restValue_.data(), extra_, x,
-            chunk * kRowsPerChunk, std::min(rows(), (chunk + 1) * kRowsPerChunk), [&](int row, Real4 s) {
-              const std::size_t at = 3 * static_cast<std::size_t>(row);
-              double product = 0;
-              for (int r = 0; r < 3; ++r) {
-                out[at + r] = s[r];
-                product += static_cast<double>(x[at + r]) * s[r];
-              }
-              sum += product;
-            });
-    chunkSums[chunk] = sum;
-  });
+  executor.ForChunks(Chunks(rows()), [&](int chunk) { chunkSums[chunk] = kernels_->multiply(Rows(chunk, x, y)); });
   double sum = 0;
   for (const double part : chunkSums) sum += part;
   return sum;
@@ -295,25 +270,17 @@ double SystemMatrix::MultiplyDot(const Real* x, Real* y, std::span<double> chunk
 
 void SystemMatrix::Residual(const Real* b, const Real* x, Real* y, const Executor& executor) const {
   executor.ForChunks(Chunks(rows()), [&](int chunk) {
-    Real* __restrict out = y;
-    ForRows(pattern_, blocks_.data(), restFirst_.data(), restColumn_.data(), restValue_.data(), extra_, x,
-            chunk * kRowsPerChunk, std::min(rows(), (chunk + 1) * kRowsPerChunk), [&](int row, Real4 s) {
-              const std::size_t at = 3 * static_cast<std::size_t>(row);
-              for (int r = 0; r < 3; ++r) out[at + r] = b[at + r] - s[r];
-            });
+    RowsArgs arguments = Rows(chunk, x, y);
+    arguments.right = b;
+    kernels_->residual(arguments);
   });
 }
 
 void SystemMatrix::Smooth(Real omega, const Real* b, const Real* x, Real* y, const Executor& executor) const {
   executor.ForChunks(Chunks(rows()), [&](int chunk) {
-    Real* __restrict out = y;
-    ForRows(pattern_, blocks_.data(), restFirst_.data(), restColumn_.data(), restValue_.data(), extra_, x,
-            chunk * kRowsPerChunk, std::min(rows(), (chunk + 1) * kRowsPerChunk), [&](int row, Real4 s) {
-              const std::size_t at = 3 * static_cast<std::size_t>(row);
-              const Real left[3] = {b[at] - s[0], b[at + 1] - s[1], b[at + 2] - s[2]};
-              const Real4 step = Product(InverseDiagonal(row), left);
-              for (int r = 0; r < 3; ++r) out[at + r] = x[at + r] + omega * step[r];
-            });
+    RowsArgs arguments = Rows(chunk, x, y);
+    arguments.omega = omega, arguments.right = b;
+    kernels_->smooth(arguments);
   });
 }
 

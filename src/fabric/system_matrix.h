@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/executor.h"
+#include "fabric/kernels.h"
 #include "fabric/real.h"
 #include "percale/mesh.h"
 
@@ -73,6 +74,8 @@ struct ExtraRows {
 
 class SystemMatrix {
  public:
+  explicit SystemMatrix(const Kernels& kernels = BestKernels()) : kernels_(&kernels) {}
+
   /// `constant`: S, as large as `pattern`. `pinned`: per row, 1 where a vertex does not move; or nothing.
   /// Afterwards nothing allocates but SetExtra.
   void SetUp(BlockPattern pattern, const ScalarMatrix& constant, std::span<const std::uint8_t> pinned = {});
@@ -125,6 +128,9 @@ class SystemMatrix {
   std::size_t MemoryBytes() const;
 
  private:
+  RowsArgs Rows(int chunk, const Real* x, Real* y) const;
+
+  const Kernels* kernels_;
   BlockPattern pattern_;
   std::vector<std::int32_t> restFirst_, restColumn_;
   std::vector<Real> restValue_;

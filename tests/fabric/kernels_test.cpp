@@ -239,3 +239,33 @@ TEST_CASE("the matrix is the sum of the triangles' blocks, and symmetric") {
     CHECK(filled == first);
   }
 }
+
+TEST_CASE("products with the matrix have the same bits on all processors, contacts or not") {
+  const Executor executor(1);
+  const test::Sheet sheet = test::Disc(15);
+  const int rows = sheet.vertices();
+  const RealVector x = test::RandomVector(rows, 1), b = test::RandomVector(rows, 2);
+  for (const int contacts : {0, 50}) {
+    std::vector<RealVector> first;
+    double firstDot = 0;
+    for (const Kernels* kernels : RunnableKernels()) {
+      CAPTURE(kernels->name);
+      SystemMatrix matrix(*kernels);
+      matrix.SetUp(MakePattern(rows, sheet.triangles), test::ConstantPart(sheet, {}), sheet.pinned);
+      matrix.Reset(executor);
+      test::AddMembrane(sheet, {}, matrix);
+      matrix.SetExtra(test::RemotePairs(sheet, contacts, 100), executor);
+      matrix.Finish(executor);
+      std::vector<RealVector> y(4, RealVector(VectorLength(rows), 0));
+      std::vector<double> sums(Index(Chunks(rows)));
+      matrix.Multiply(x.data(), y[0].data(), executor);
+      const double dot = matrix.MultiplyDot(x.data(), y[1].data(), sums, executor);
+      matrix.Residual(b.data(), x.data(), y[2].data(), executor);
+      matrix.Smooth(Real{0.5}, b.data(), x.data(), y[3].data(), executor);
+      if (first.empty()) first = y, firstDot = dot;
+      CHECK(y[1] == y[0]);
+      CHECK(y == first);
+      CHECK(dot == firstDot);
+    }
+  }
+}

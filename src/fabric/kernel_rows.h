@@ -1,0 +1,91 @@
+// Products of the matrix with a vector. Included by kernels_impl.h inside the namespace of an instruction set; never
+// elsewhere.
+
+/// A sum of products of a block with a vector of three. The products of the nine numbers are summed apart and added up
+/// at the end, on all processors in the same order.
+#if defined(__AVX2__)
+class BlockSum {
+ public:
+  void Add(const Real* block, const Real* v) {
+    const __m256i eight = _mm256_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2);
+    const __m256 spread = _mm256_permutevar8x32_ps(_mm256_castps128_ps256(_mm_loadu_ps(v)), eight);
+    first_ = _mm256_add_ps(first_, _mm256_mul_ps(_mm256_loadu_ps(block), spread));
+    last_ += block[8] * v[2];
+  }
+  Floats4 Total() const {
+    const __m256i fromThree = _mm256_setr_epi32(3, 4, 5, 6, 6, 6, 6, 6);
+    const __m128 column0 = _mm256_castps256_ps128(first_);
+    const __m128 column1 = _mm256_castps256_ps128(_mm256_permutevar8x32_ps(first_, fromThree));
+    const __m128 column2 = _mm_shuffle_ps(_mm256_extractf128_ps(first_, 1), _mm_set_ss(last_), _MM_SHUFFLE(1, 0, 3, 2));
+    return Floats4(_mm_add_ps(_mm_add_ps(column0, column1), column2));
+  }
+
+ private:
+  __m256 first_ = _mm256_setzero_ps();
+  Real last_ = 0;
+};
+#else
+class BlockSum {
+ public:
+  void Add(const Real* block, const Real* v) {
+    for (int c = 0; c < 3; ++c) column_[c] += Floats4::Load(block + 3 * c) * Floats4(v[c]);
+  }
+  Floats4 Total() const { return column_[0] + column_[1] + column_[2]; }
+
+ private:
+  Floats4 column_[3];
+};
+#endif
+
+/// Calls store(row, H x at that row) for each row.
+template <class Store>
+inline void ForRows(const RowsArgs& a, Store&& store) {
+  for (int row = a.begin; row < a.end; ++row) {
+    BlockSum sum;
+    for (std::int32_t k = a.first[row]; k < a.first[row + 1]; ++k) {
+      sum.Add(a.blocks + 9 * static_cast<std::int64_t>(k), a.x + 3 * static_cast<std::int64_t>(a.column[k]));
+    }
+    if (a.extraBlocks) {
+      for (std::int32_t k = a.extraBegin[row]; k < a.extraEnd[row]; ++k) {
+        sum.Add(a.extraBlocks + 9 * static_cast<std::int64_t>(k),
+                a.x + 3 * static_cast<std::int64_t>(a.extraColumn[k]));
+      }
+    }
+    Floats4 rest;
+    for (std::int32_t k = a.restFirst[row]; k < a.restFirst[row + 1]; ++k) {
+      rest += Floats4::Load(a.x + 3 * static_cast<std::int64_t>(a.restColumn[k])) * Floats4(a.restValue[k]);
+    }
+    store(row, sum.Total() + rest);
+  }
+}
+
+double Multiply(const RowsArgs& a) {
+  double dot = 0;
+  ForRows(a, [&](int row, Floats4 s) {
+    const std::int64_t at = 3 * static_cast<std::int64_t>(row);
+    double product = 0;
+    for (int r = 0; r < 3; ++r) {
+      a.y[at + r] = s[r];
+      product += static_cast<double>(a.x[at + r]) * static_cast<double>(s[r]);
+    }
+    dot += product;
+  });
+  return dot;
+}
+
+void Residual(const RowsArgs& a) {
+  ForRows(a, [&](int row, Floats4 s) {
+    const std::int64_t at = 3 * static_cast<std::int64_t>(row);
+    for (int r = 0; r < 3; ++r) a.y[at + r] = a.right[at + r] - s[r];
+  });
+}
+
+void Smooth(const RowsArgs& a) {
+  ForRows(a, [&](int row, Floats4 s) {
+    const std::int64_t at = 3 * static_cast<std::int64_t>(row);
+    const Real* inverse = a.inverse + 3 * at;
+    Floats4 step;
+    for (int c = 0; c < 3; ++c) step += Floats4::Load(inverse + 3 * c) * Floats4(a.right[at + c] - s[c]);
+    for (int r = 0; r < 3; ++r) a.y[at + r] = a.x[at + r] + a.omega * step[r];
+  });
+}
