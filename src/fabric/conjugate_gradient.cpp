@@ -68,6 +68,7 @@ SolveResult ConjugateGradient::Solve(const SystemMatrix& matrix, Multigrid& mult
   std::copy(preconditioned_.begin(), preconditioned_.end(), direction_.begin());
   result.ratio = 1;
   result.end = SolveEnd::OutOfIterations;
+  double gain = 0;  // twice that
   for (;;) {
     const double curvature = matrix.MultiplyDot(p, product_.data(), chunkSums_, executor);
     ++result.iterations;
@@ -85,6 +86,11 @@ SolveResult ConjugateGradient::Solve(const SystemMatrix& matrix, Multigrid& mult
       }
     });
     if (result.iterations == settings.maxIterations) break;
+    gain += rz * rz / curvature;
+    if (rz * rz / curvature <= settings.leastGain * gain) {
+      result.end = SolveEnd::Converged;
+      break;
+    }
     multigrid.Apply(matrix, r, z, executor);
     const double before = rz;
     rz = Dot(r, z, rows, chunkSums_, executor);

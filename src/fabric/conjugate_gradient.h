@@ -15,6 +15,10 @@ namespace percale::fabric {
 struct SolveSettings {
   int maxIterations = 8;    ///< >= 1.
   double tolerance = 0.01;  ///< Done when r'z is at most that share of what it was at the start, > 0.
+  /// Done as well when an iteration gains at most that share of what all have gained in ½ x'Hx - b'x; 0: never. To know
+  /// costs nothing, while r'z takes a cycle (Nash, Sofer 1990, "Assessing a search direction within a
+  /// truncated-Newton method").
+  double leastGain = 0;
 };
 
 enum class SolveEnd {

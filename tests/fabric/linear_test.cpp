@@ -464,6 +464,23 @@ TEST_CASE("nothing to solve is solved, and few iterations are no more than asked
   for (int k = 0; k < 3 * sheet.vertices(); ++k) CHECK_FALSE((sheet.pinned[k / 3] && x[k] != 0));
 }
 
+TEST_CASE("a solve that ends when an iteration gains little has gained most of what there is") {
+  for (const bool material : {true, false}) {
+    const Sheet sheet = Square(64);
+    const int n = sheet.vertices();
+    Solver solver(sheet, material);
+    for (const RealVector& b : {Weight(sheet), RandomVector(n, 12, sheet.pinned)}) {
+      SolveResult result, early;
+      const RealVector x = solver.Solve(b, result, {100, 1e-8});
+      const RealVector little = solver.Solve(b, early, {100, 1e-8, 0.04});
+      CHECK(early.end == SolveEnd::Converged);
+      CHECK(early.iterations < result.iterations);
+      // ½ x'Hx - b'x is -½ b'x for all that conjugate gradients pass.
+      CHECK(ToEigen(little, n).dot(ToEigen(b, n)) > 0.95 * ToEigen(x, n).dot(ToEigen(b, n)));
+    }
+  }
+}
+
 TEST_CASE("the direct solve of the coarsest level") {
   for (const int n : {1, 3, 50, 147}) {
     Dense a = Dense::Random(n, n);
