@@ -30,6 +30,8 @@ constexpr VerifyCase kCases[] = {
      "every vertex follows, every triangle has the same strain", "the patch test of finite elements", VerifyPatch},
     {"orthotropy", "Membrane", "Strips cut along the warp, aslant and along the weft",
      "1/K = c⁴/K₁ + c² s² (1/G − 2 ν/K₁) + s⁴/K₂", "Jones 1999, eq. 2.97", VerifyOrthotropy, true},
+    {"balloon", "Membrane", "Two discs of radius a joined at the rim and inflated, the mylar balloon",
+     "radius 0.7628 a, volume 1.2185 a³", "Paulsen 1994", VerifyBalloon, true},
     {"free_motion", "Time", "A sheet that falls, flies, and is seen from another frame",
      "no force without a cause; no frame is special", "Galilei", VerifyFreeMotion},
     {"momentum", "Time", "A free sheet in motion, each vertex its own way", "Σ m v stays; inner forces turn nothing",
@@ -40,6 +42,8 @@ constexpr VerifyCase kCases[] = {
      "1/√(1 + ω² h²) per step", "backward Euler on one mode", VerifyDecay},
     {"order", "Time", "A strip that falls, with steps of h, h/2 and h/4", "log₂ of the ratio of differences is 1",
      "backward Euler is of first order", VerifyOrder},
+    {"drape", "Drape", "A disc of cotton, 30 cm wide, over a pedestal of 18 cm, after Cusick",
+     "shadow of the ring over the ring, 68 %", "Cusick 1965; measurements of cotton 60 to 76", VerifyDrape, true},
 };
 
 Reading MakeReading(std::string what, double measured, double expected, double low, double high, std::string gate) {

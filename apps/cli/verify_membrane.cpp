@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "apps/cli/verify_cases.h"
 #include "apps/cli/verify_laws.h"
@@ -171,9 +172,10 @@ CaseResult VerifyOrthotropy(const Effort& effort) {
 }
 
 CaseResult VerifyBalloon(const Effort& effort) {
-  // Two discs of radius 1 that share their rim. Beyond what they would stretch by, they only fold.
-  constexpr double kPressure = 1, kStiffness = 1000;
-  const int rings = Elements(16 * effort.mesh, 4);
+  // Two discs of radius 1 that share their rim. Foil does not stretch, and around the rim it is in folds finer than any
+  // mesh, which bear no load. So each triangle is cut with its warp along the radius, and hardly resists otherwise.
+  constexpr double kPressure = 1, kAlong = 1000, kAcross = 1;  // Pa, N/m
+  const int rings = Elements(12 * effort.mesh, 4);
   const RestMesh disc = MakeDisc(1, rings);
   const auto count = static_cast<std::int32_t>(disc.positions.size()), rim = count - 6 * rings;
   RestMesh mesh = disc;
@@ -187,31 +189,44 @@ CaseResult VerifyBalloon(const Effort& effort) {
       mesh.material.push_back({p.x, -p.y});
     }
   }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    Vec2* p = &mesh.material[3 * t];
+    const double x = p[0].x + p[1].x + p[2].x, y = p[0].y + p[1].y + p[2].y, length = std::hypot(x, y);
+    for (int k = 0; k < 3; ++k) p[k] = {(x * p[k].x + y * p[k].y) / length, (x * p[k].y - y * p[k].x) / length};
+  }
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     Vec3& x = mesh.positions[v];
     const double bulge = 0.3 * (1 - Dot(x, x));
     x.y = v < std::size_t(count) ? bulge : -bulge;
   }
-  Scene scene = EmptyScene(10);
-  scene.cloths.push_back(PlainSheet(1, 1, 1, 1, 0.1, kStiffness, 0.3, 0));
+  Scene scene = EmptyScene(3);
+  scene.cloths.push_back(PlainSheet(1, 1, 1, 1, 0.1, kAlong, 0, 0));
+  scene.cloths[0].stretchWeft = scene.cloths[0].shear = kAcross;
   scene.cloths[0].pressure = kPressure;
   MeshRun run(scene, mesh, {});
-  const bool still = run.Settle(1e-5, 300);
-  double radius = 0, volume = 0;
-  for (std::int32_t v = rim; v < count; ++v) {
-    const Vec3& x = run.positions()[std::size_t(v)];
-    radius += std::hypot(x.x, x.z) / (count - rim);
+  const auto volume = [&] {
+    double sum = 0;
+    const std::span<const Vec3> x = run.positions();
+    for (const Triangle& t : mesh.triangles) {
+      sum += Dot(x[std::size_t(t.a)], Cross(x[std::size_t(t.b)], x[std::size_t(t.c)])) / 6;
+    }
+    return sum;
+  };
+  double before = 0, now = volume();
+  constexpr int kMostSteps = 60;
+  for (int k = 0; k < kMostSteps && std::abs(now - before) > 1e-6 * now; ++k) {
+    run.Step();
+    before = std::exchange(now, volume());
   }
-  for (const Triangle& t : mesh.triangles) {
-    volume += Dot(run.positions()[std::size_t(t.a)],
-                  Cross(run.positions()[std::size_t(t.b)], run.positions()[std::size_t(t.c)])) /
-              6;
-  }
+  const bool still = std::abs(now - before) <= 1e-6 * now;
+  const std::span<const Vec3> ring = run.positions().subspan(std::size_t(rim), std::size_t(count - rim));
+  Vec3 centre;
+  for (const Vec3& x : ring) centre += x / double(ring.size());
+  double radius = 0;
+  for (const Vec3& x : ring) radius += Length(x - centre) / double(ring.size());
   CaseResult result;
   result.readings.push_back(Relative("radius r/a", still ? radius : NAN, kBalloonRadius, 0.03));
-  result.readings.push_back(Relative("volume V/a³", still ? volume : NAN, kBalloonVolume, 0.03));
-  if (!still)
-    result.note = FormatNumber(radius) + " " + FormatNumber(volume) + " move " + FormatNumber(run.greatestMove());
+  result.readings.push_back(Relative("volume V/a³", still ? now : NAN, kBalloonVolume, 0.03));
   return result;
 }
 

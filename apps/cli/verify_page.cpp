@@ -16,6 +16,7 @@ constexpr std::array<const char*, kColumns> kHeads = {"case",  "quantity", "meas
                                                       "error", "gate",     "verdict"};
 constexpr std::size_t kFirstNumber = 2, kLastNumber = 5;  // of the columns: set flush right
 constexpr std::size_t kMostSeries = 6;                    // that a plot has colours for
+constexpr std::size_t kLegend = 78, kLegendMark = 5;      // about as many characters, in all and per series
 
 using Row = std::array<std::string, kColumns>;
 
@@ -59,11 +60,14 @@ Plot PlotOf(const Refinement& refinement) {
   plot.title = "Error and " + refinement.axis;
   plot.x = {.label = refinement.axis + ", relative", .logarithmic = true, .min = {}, .max = {}};
   plot.y = {.label = "|error|", .logarithmic = true, .min = {}, .max = {}};
-  const std::size_t readings = refinement.results[0].readings.size();
-  // Of many readings as many as there are colours, evenly among them.
-  const std::size_t shown = std::min(readings, kMostSeries);
+  const std::vector<Reading>& readings = refinement.results[0].readings;
+  // As many of them as the legend has room for, evenly among all.
+  std::size_t widest = 0;
+  for (const Reading& reading : readings) widest = std::max(widest, Width(reading.what));
+  const std::size_t shown =
+      std::min({readings.size(), kMostSeries, std::max<std::size_t>(1, kLegend / (widest + kLegendMark))});
   for (std::size_t s = 0; s < shown; ++s) {
-    const std::size_t at = shown < 2 ? 0 : s * (readings - 1) / (shown - 1);
+    const std::size_t at = shown < 2 ? 0 : s * (readings.size() - 1) / (shown - 1);
     Series series{refinement.results[0].readings[at].what, {}, true};
     for (std::size_t k = 0; k < refinement.factors.size(); ++k) {
       if (at >= refinement.results[k].readings.size()) continue;
