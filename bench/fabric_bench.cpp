@@ -62,9 +62,9 @@ Scene HangingSheet(int side, double stiffness) {
 struct Run {
   std::string method;
   std::string setting;
-  double milliseconds = 0;      // per frame: the median
-  std::vector<double> stretch;  // 99th percentile, of each measured frame
-  double error = 0;             // of the mean of that beyond 1
+  double milliseconds = 0;           // per frame: the median
+  std::vector<double> stretch = {};  // 99th percentile, of each measured frame
+  double error = 0;                  // of the mean of that beyond 1
 };
 
 double Median(std::vector<double> values) {
