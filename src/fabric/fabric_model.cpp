@@ -41,10 +41,12 @@ void Append(const RestMesh& mesh, double warpAngle, FabricModel& model) {
   const int first = model.vertexCount;
   model.firstVertex.push_back(first);
   model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
+  const auto cloth = static_cast<std::int32_t>(model.firstVertex.size() - 1);
   model.vertexCount += static_cast<int>(mesh.positions.size());
   model.start.insert(model.start.end(), mesh.positions.begin(), mesh.positions.end());
   for (const Triangle& t : mesh.triangles) {
     model.triangles.push_back({t.a + first, t.b + first, t.c + first});
+    model.clothOf.push_back(cloth);
   }
   for (const Vec2& p : mesh.material) model.material.push_back(AlongWarp(p, warpAngle));
 }
@@ -206,38 +208,27 @@ std::vector<std::uint8_t> VerticesOf(const Patch& patch, const ClothSettings& cl
   return in;
 }
 
-/// The materials of a scene: those of its cloths, then one for each set of patches that meet on a triangle. Sets each
-/// triangle's number in `model`.
-std::vector<ClothSettings> FindMaterials(const Scene& scene, FabricModel& model) {
-  std::vector<ClothSettings> materials = scene.cloths;
-  model.clothOf.resize(model.triangles.size());
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const auto begin = model.clothOf.begin() + model.firstTriangle[c],
-               end = model.clothOf.begin() + model.firstTriangle[c + 1];
-    std::fill(begin, end, static_cast<std::int32_t>(c));
-  }
+/// Factors of the patches that a triangle lies in.
+struct Factors {
+  double stretch = 1, bend = 1, density = 1;
+};
+
+/// Those of each triangle.
+std::vector<Factors> FindFactors(const Scene& scene, const FabricModel& model) {
+  std::vector<Factors> factors(model.triangles.size());
   for (const Patch& patch : scene.patches) {
     const auto c = Index(patch.cloth);
     const int first = model.firstVertex[c];
     const std::vector<std::uint8_t> in = VerticesOf(patch, scene.cloths[c], Index(model.firstVertex[c + 1] - first));
-    // The material that each of those before becomes in this patch, once one of its triangles lies there.
-    std::vector<std::int32_t> within(materials.size(), -1);
     for (std::size_t t = Index(model.firstTriangle[c]); t < Index(model.firstTriangle[c + 1]); ++t) {
       const Triangle& corners = model.triangles[t];
       if (!in[Index(corners.a - first)] || !in[Index(corners.b - first)] || !in[Index(corners.c - first)]) continue;
-      std::int32_t& number = within[Index(model.clothOf[t])];
-      if (number < 0) {
-        number = static_cast<std::int32_t>(materials.size());
-        ClothSettings material = materials[Index(model.clothOf[t])];
-        material.stretchWarp *= patch.stretch, material.stretchWeft *= patch.stretch, material.shear *= patch.stretch;
-        material.bendWarp *= patch.bend, material.bendWeft *= patch.bend;
-        material.density *= patch.density;
-        materials.push_back(std::move(material));
-      }
-      model.clothOf[t] = number;
+      factors[t].stretch *= patch.stretch;
+      factors[t].bend *= patch.bend;
+      factors[t].density *= patch.density;
     }
   }
-  return materials;
+  return factors;
 }
 
 }  // namespace
@@ -271,8 +262,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   model.bendDamping.clear();
   model.anyHinges = false;
   model.plate.clear();
-  const std::vector<ClothSettings> materials = FindMaterials(scene, model);
-  for (const ClothSettings& cloth : materials) {
+  for (const ClothSettings& cloth : scene.cloths) {
     Membrane membrane;
     membrane.kind = cloth.membraneLaw;
     membrane.damping = cloth.stretchDamping;
@@ -286,12 +276,13 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     model.membranes.push_back(membrane);
     model.pressure.push_back(cloth.pressure);
     model.bendDamping.push_back(cloth.bendDamping);
-  }
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const bool plate = scene.cloths[c].bendingLaw == BendingLaw::Quadratic;
+    const bool plate = cloth.bendingLaw == BendingLaw::Quadratic;
     model.anyHinges = model.anyHinges || !plate;
-    model.plate.resize(Index(model.firstVertex[c + 1]), plate ? 1 : 0);
+    model.plate.resize(Index(model.firstVertex[model.membranes.size()]), plate ? 1 : 0);
   }
+  const std::vector<Factors> factors = FindFactors(scene, model);
+  model.strength.clear();
+  for (const Factors& factor : factors) model.strength.push_back(factor.stretch);
   for (FabricHinge& hinge : model.hinges) {
     const auto x = [&](int k) { return From<double>(model.start[Index(hinge.vertex[k])]); };
     const auto cloth = std::upper_bound(model.firstVertex.begin(), model.firstVertex.end(), hinge.vertex[0]) - 1;
@@ -304,11 +295,13 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& triangle = model.triangles[t];
     const std::int32_t corners[3] = {triangle.a, triangle.b, triangle.c};
-    const ClothSettings& cloth = materials[Index(model.clothOf[t])];
-    for (const std::int32_t v : corners) model.mass[Index(v)] += cloth.density * model.rest[t].area / 3;
+    const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
+    const double density = cloth.density * factors[t].density;
+    for (const std::int32_t v : corners) model.mass[Index(v)] += density * model.rest[t].area / 3;
 
-    const double mixed = std::sqrt(cloth.bendWarp * cloth.bendWeft);
-    const BendingStiffness stiffness{cloth.bendWarp, cloth.poissonRatio * mixed, cloth.bendWeft,
+    const double bendWarp = cloth.bendWarp * factors[t].bend, bendWeft = cloth.bendWeft * factors[t].bend;
+    const double mixed = std::sqrt(bendWarp * bendWeft);
+    const BendingStiffness stiffness{bendWarp, cloth.poissonRatio * mixed, bendWeft,
                                      0.5 * (1 - cloth.poissonRatio) * mixed};
     const auto self = static_cast<std::int32_t>(t);
     const MaterialPoint points[3] = {Corner(model, self, 0), Corner(model, self, 1), Corner(model, self, 2)};
@@ -334,10 +327,11 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   model.buckling.assign(model.triangles.size(), 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& tri = model.triangles[t];
-    const ClothSettings& cloth = materials[Index(model.clothOf[t])];
+    const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
+    const double mixed = std::sqrt(cloth.bendWarp * cloth.bendWeft) * factors[t].bend;
     const double mass = model.mass[Index(tri.a)] + model.mass[Index(tri.b)] + model.mass[Index(tri.c)];
     const double area = model.rest[t].area;
-    if (area > 0) model.buckling[t] = 2 * std::sqrt(std::sqrt(cloth.bendWarp * cloth.bendWeft) * mass / (6 * area));
+    if (area > 0) model.buckling[t] = 2 * std::sqrt(mixed * mass / (6 * area)) / model.strength[t];
   }
 }
 

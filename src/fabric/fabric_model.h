@@ -62,24 +62,25 @@ struct FabricModel {
   std::vector<Triangle> chartTriangles;    ///< The same, of points of the chart.
   std::vector<Vec2> chart;                 ///< Material points, each once per vertex [m]; none where the
                                            ///< triangles do not lie side by side in the material.
-  std::vector<std::int32_t> clothOf;       ///< Per triangle its material, see below.
+  std::vector<std::int32_t> clothOf;       ///< Per triangle.
   std::vector<RestTriangle<double>> rest;  ///< Per triangle.
   std::vector<FabricHinge> hinges;
   std::vector<std::array<std::int32_t, 3>> hingeOf;  ///< Per triangle those opposite of its corners; -1 at a border.
   Lists corners;                                     ///< Per vertex its corners: 3 * triangle + 0, 1, 2, ascending.
   Lists hingeEnds;                                   ///< Per vertex its places in hinges: 4 * hinge + 0..3, ascending.
 
-  // Materials. Those of whole cloths come first and have their cloths' numbers; those of patches follow.
+  // Materials.
   std::vector<double> mass;                    ///< Per vertex [kg].
-  std::vector<Membrane> membranes;             ///< Per material.
-  std::vector<double> pressure;                ///< Per material, that of its cloth [Pa].
-  std::vector<double> bendDamping;             ///< Per material, that of its cloth [s].
+  std::vector<Membrane> membranes;             ///< Per cloth.
+  std::vector<double> strength;                ///< Per triangle: of its membrane over that of its cloth, by patches.
+  std::vector<double> pressure;                ///< Per cloth [Pa].
+  std::vector<double> bendDamping;             ///< Per cloth [s].
   std::vector<BendingMatrix<double>> bending;  ///< Per triangle, for the angles of its three hinges [N m].
   std::vector<std::uint8_t> plate;             ///< Per vertex: 1 where the cloth bends by BendingLaw::Quadratic.
   ScalarMatrix plates;                         ///< Bending of all cloths as a quadratic of the positions, each row
                                                ///< with an entry on the diagonal [N/m].
   std::vector<double> buckling;                ///< Per triangle: a plate's buckling stress on its own inertia over a
-                                               ///< step, times the step, 2 sqrt(D rho) [N s/m].
+                                               ///< step, times the step, 2 sqrt(D rho), over `strength` [N s/m].
   bool anyHinges = false;                      ///< Whether any cloth bends by BendingLaw::Hinges.
 
   int Cloths() const { return static_cast<int>(firstVertex.size()) - 1; }

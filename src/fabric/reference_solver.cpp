@@ -80,7 +80,9 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     const Triangle& tri = model_.triangles[t];
     const std::int32_t corners[3] = {tri.a, tri.b, tri.c};
     const std::size_t cloth = Index(model_.clothOf[t]);
-    const RestTriangle<double>& rest = model_.rest[t];
+    // All of a membrane's terms are in proportion to its area, so that of a patch counts as so much more of it.
+    RestTriangle<double> rest = model_.rest[t];
+    rest.area *= model_.strength[t];
     const Membrane& membrane = model_.membranes[cloth];
     const DeformationGradient<double> f = Deformation(rest, At(y, tri.a), At(y, tri.b), At(y, tri.c));
     const MembraneDamping<double> damping{membrane.damping * perStep, startStrain_[t]};
