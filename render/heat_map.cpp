@@ -39,12 +39,12 @@ void HeatMap::MeasureCloth(Quantity quantity, const ClothShape& cloth, std::vect
   switch (quantity) {
     case Quantity::Stretch:
       second_.resize(count);
-      MeasureStretch(cloth.positions, cloth.rest, cloth.springs, measured_, second_);
+      MeasureStretch(cloth.positions, cloth.springs, cloth.restLengths, measured_, second_);
       break;
     case Quantity::Compression:
       // What is only stretched is not compressed.
       second_.resize(count);
-      MeasureStretch(cloth.positions, cloth.rest, cloth.springs, second_, measured_);
+      MeasureStretch(cloth.positions, cloth.springs, cloth.restLengths, second_, measured_);
       for (double& ratio : measured_) ratio = std::min(ratio, 1.0);
       break;
     case Quantity::Speed:

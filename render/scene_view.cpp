@@ -176,7 +176,7 @@ const DrawList& SceneView::Update(const World& world, const View& view, int widt
   for (int i = 0; i < world.ClothCount(); ++i) {
     const ClothView cloth = world.Cloth(i);
     shapes.push_back({cloth.positions(), cloth.uv(), cloth.triangles(), cloth.springs(), cloth.rest(),
-                      cloth.velocities(), cloth.pinned()});
+                      cloth.velocities(), cloth.pinned(), cloth.restLengths()});
   }
   return Update(world.scene(), shapes, view, width, height, world.balls());
 }

@@ -49,6 +49,7 @@ struct ClothShape {
   std::span<const Vec3> rest = {};
   std::span<const Vec3> velocities = {};
   std::span<const std::int32_t> pinned = {};
+  std::span<const double> restLengths = {};
 };
 
 /// Turns a World into a draw list, and keeps what stays the same from one picture to the next.

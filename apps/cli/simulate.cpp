@@ -92,7 +92,7 @@ class ReportRecorder {
     stretch_.clear();
     for (int c = 0; c < world_.ClothCount(); ++c) {
       const ClothView cloth = world_.Cloth(c);
-      AppendStretch(cloth.positions(), cloth.rest(), cloth.springs(), stretch_);
+      AppendStretch(cloth.positions(), cloth.springs(), cloth.restLengths(), stretch_);
     }
     std::optional<double> stretch99;
     if (!stretch_.empty()) stretch99 = Percentile(stretch_, 0.99);

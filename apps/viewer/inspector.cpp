@@ -71,9 +71,10 @@ void Facts(const Session& session, const UiState& state, const VertexRef& ref) {
 
   double greatest = 0, least = 0;
   int springs = 0;
-  for (const Edge& spring : topology.springs) {
+  for (std::size_t s = 0; s < topology.springs.size(); ++s) {
+    const Edge& spring = topology.springs[s];
     if (spring.a != ref.vertex && spring.b != ref.vertex) continue;
-    const double rest = Length(topology.rest[Index(spring.a)] - topology.rest[Index(spring.b)]);
+    const double rest = topology.restLengths[s];
     const double ratio = Length(cloth.positions[Index(spring.a)] - cloth.positions[Index(spring.b)]) / rest;
     greatest = springs == 0 ? ratio : std::max(greatest, ratio);
     least = springs == 0 ? ratio : std::min(least, ratio);

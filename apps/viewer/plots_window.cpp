@@ -35,7 +35,7 @@ void MeasureNewest(Session& session, std::vector<double>& ratios) {
   if (rows.empty() || rows.back().stretch99 || rows.back().report.frame != snapshot.report.frame) return;
   ratios.clear();
   for (const ClothCopy& cloth : snapshot.cloths)
-    AppendStretch(cloth.positions, cloth.topology->rest, cloth.topology->springs, ratios);
+    AppendStretch(cloth.positions, cloth.topology->springs, cloth.topology->restLengths, ratios);
   if (!ratios.empty()) session.frames().SetStretch99(snapshot.report.frame, Percentile(ratios, 0.99));
 }
 

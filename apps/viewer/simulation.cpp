@@ -182,11 +182,14 @@ void Simulation::CopyTopologies() {
     if (old && SameEdges(old->springs, cloth.springs()) && SameTriangles(old->triangles, cloth.triangles()) &&
         std::equal(old->uv.begin(), old->uv.end(), cloth.uv().begin(), cloth.uv().end()) &&
         std::equal(old->rest.begin(), old->rest.end(), cloth.rest().begin(), cloth.rest().end()) &&
+        std::equal(old->restLengths.begin(), old->restLengths.end(), cloth.restLengths().begin(),
+                   cloth.restLengths().end()) &&
         std::equal(old->pinned.begin(), old->pinned.end(), cloth.pinned().begin(), cloth.pinned().end())) {
       continue;
     }
-    old = std::make_shared<const ClothTopology>(ClothTopology{
-        Copy(cloth.uv()), Copy(cloth.triangles()), Copy(cloth.springs()), Copy(cloth.rest()), Copy(cloth.pinned())});
+    old = std::make_shared<const ClothTopology>(ClothTopology{Copy(cloth.uv()), Copy(cloth.triangles()),
+                                                              Copy(cloth.springs()), Copy(cloth.rest()),
+                                                              Copy(cloth.pinned()), Copy(cloth.restLengths())});
   }
 }
 

@@ -24,8 +24,9 @@ struct ClothTopology {
   std::vector<Vec2> uv;
   std::vector<Triangle> triangles;
   std::vector<Edge> springs;  ///< Of the enabled kinds.
-  std::vector<Vec3> rest;     ///< The rest shape [m].
+  std::vector<Vec3> rest;     ///< Where it started [m].
   std::vector<std::int32_t> pinned;
+  std::vector<double> restLengths;  ///< Of the springs [m].
 };
 
 struct ClothCopy {

@@ -310,7 +310,7 @@ class Viewer {
       for (std::size_t i = 0; i < velocities.size(); ++i)
         velocities[i] = (cloth.positions[i] - cloth.previous[i]) / state.scene->TimeStep();
       shapes_.push_back({cloth.positions, topology.uv, topology.triangles, topology.springs, topology.rest, velocities,
-                         topology.pinned});
+                         topology.pinned, topology.restLengths});
     }
     target->Bind();
     const DrawList& list = sceneView_.Update(*state.scene, shapes_, order.view, size.width, size.height, state.balls);
@@ -361,7 +361,7 @@ class Viewer {
     for (const ClothCopy& cloth : snapshot.cloths) {
       const ClothTopology& topology = *cloth.topology;
       shapes_.push_back({cloth.positions, topology.uv, topology.triangles, topology.springs, topology.rest,
-                         cloth.velocities, topology.pinned});
+                         cloth.velocities, topology.pinned, topology.restLengths});
     }
     const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows, snapshot.balls);
     scale_ = list.heatScale;

@@ -76,13 +76,14 @@ class ClothView {
  public:
   std::span<const Vec3> positions() const { return positions_; }      ///< [m], one per vertex.
   std::span<const Vec3> velocities() const { return velocities_; }    ///< [m/s], one per vertex.
-  std::span<const Vec3> rest() const { return rest_; }                ///< The rest shape, where it started [m].
+  std::span<const Vec3> rest() const { return rest_; }                ///< Where it started [m].
   std::span<const Vec2> uv() const { return uv_; }                    ///< 0..1, one per vertex.
   std::span<const Triangle> triangles() const { return triangles_; }  ///< Vertex indices.
   std::span<const Edge> springs() const {
     return springs_;
   }                                                                 ///< Of the enabled kinds, in creation order;
                                                                     ///< Engine::Fabric: edges of triangles.
+  std::span<const double> restLengths() const { return lengths_; }  ///< Of the springs [m].
   std::span<const std::int32_t> pinned() const { return pinned_; }  ///< Vertex indices, ascending.
 
  private:
@@ -91,6 +92,7 @@ class ClothView {
   std::span<const Vec2> uv_;
   std::span<const Triangle> triangles_;
   std::span<const Edge> springs_;
+  std::span<const double> lengths_;
   std::span<const std::int32_t> pinned_;
 };
 

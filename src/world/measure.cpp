@@ -18,9 +18,9 @@ double SquaredLength(const Vec3& a) {
 }
 
 /// Of length over rest length; 1 for a spring without a rest length.
-double SquaredRatio(std::span<const Vec3> positions, std::span<const Vec3> rest, const Edge& spring) {
-  const double atRest = SquaredLength(rest[Index(spring.a)] - rest[Index(spring.b)]);
-  return atRest > 0 ? SquaredLength(positions[Index(spring.a)] - positions[Index(spring.b)]) / atRest : 1;
+double SquaredRatio(std::span<const Vec3> positions, const Edge& spring, double atRest) {
+  if (!(atRest > 0)) return 1;
+  return SquaredLength(positions[Index(spring.a)] - positions[Index(spring.b)]) / (atRest * atRest);
 }
 
 constexpr std::size_t kBitsPerSlot = 16;
@@ -65,13 +65,14 @@ constexpr Box kHalfAround[] = {{0, 0, 0},  {1, 0, 0},  {-1, 1, 0}, {0, 1, 0}, {1
 
 }  // namespace
 
-void MeasureStretch(std::span<const Vec3> positions, std::span<const Vec3> rest, std::span<const Edge> springs,
+void MeasureStretch(std::span<const Vec3> positions, std::span<const Edge> springs, std::span<const double> lengths,
                     std::span<double> greatest, std::span<double> least) {
-  assert(rest.size() == positions.size() && greatest.size() == positions.size() && least.size() == positions.size());
+  assert(lengths.size() == springs.size() && greatest.size() == positions.size() && least.size() == positions.size());
   constexpr double kNone = -1;
   std::fill(greatest.begin(), greatest.end(), kNone);
-  for (const Edge& spring : springs) {
-    const double ratio = SquaredRatio(positions, rest, spring);
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const Edge& spring = springs[s];
+    const double ratio = SquaredRatio(positions, spring, lengths[s]);
     for (const std::int32_t end : {spring.a, spring.b}) {
       double &most = greatest[Index(end)], &fewest = least[Index(end)];
       fewest = most == kNone ? ratio : std::min(fewest, ratio);
@@ -85,9 +86,11 @@ void MeasureStretch(std::span<const Vec3> positions, std::span<const Vec3> rest,
   }
 }
 
-void AppendStretch(std::span<const Vec3> positions, std::span<const Vec3> rest, std::span<const Edge> springs,
+void AppendStretch(std::span<const Vec3> positions, std::span<const Edge> springs, std::span<const double> lengths,
                    std::vector<double>& ratios) {
-  for (const Edge& spring : springs) ratios.push_back(std::sqrt(SquaredRatio(positions, rest, spring)));
+  assert(lengths.size() == springs.size());
+  for (std::size_t s = 0; s < springs.size(); ++s)
+    ratios.push_back(std::sqrt(SquaredRatio(positions, springs[s], lengths[s])));
 }
 
 double Percentile(std::span<double> values, double share) {

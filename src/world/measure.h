@@ -15,12 +15,12 @@
 namespace percale {
 
 /// Per vertex the greatest and the least length over rest length of the springs that end there; 1 where
-/// there is none. The rest lengths are those between the points of `rest`.
-void MeasureStretch(std::span<const Vec3> positions, std::span<const Vec3> rest, std::span<const Edge> springs,
+/// there is none. `lengths` are those of the springs at rest [m].
+void MeasureStretch(std::span<const Vec3> positions, std::span<const Edge> springs, std::span<const double> lengths,
                     std::span<double> greatest, std::span<double> least);
 
 /// Adds the length over rest length of each spring to `ratios`.
-void AppendStretch(std::span<const Vec3> positions, std::span<const Vec3> rest, std::span<const Edge> springs,
+void AppendStretch(std::span<const Vec3> positions, std::span<const Edge> springs, std::span<const double> lengths,
                    std::vector<double>& ratios);
 
 /// The smallest of the values that a share 0..1 of them does not exceed: 0.99 gives the 99th percentile.

@@ -56,13 +56,31 @@ ClothModel MakeModel(const ClothSettings& settings, Engine engine) {
   model.start = std::move(mesh.positions);
   model.uv = std::move(mesh.uv);
   model.triangles = std::move(mesh.triangles);
+  model.material = std::move(mesh.material);
   return model;
 }
 
-/// The springs of a cloth; of one without, the edges of its triangles.
-std::vector<Edge> SpringsOf(const ClothModel& model, const ClothSettings& settings, Engine engine) {
-  if (engine == Engine::Springs) return EnabledSprings(model, settings);
-  return BuildTopology(model.start.size(), model.triangles).edges;
+/// The springs of a cloth, and their lengths at rest; of one without, the edges of its triangles as the flat fabric
+/// has them. Where the two sides of a seam differ, the first counts.
+void FindSprings(const ClothModel& model, const ClothSettings& settings, Engine engine, std::vector<Edge>& springs,
+                 std::vector<double>& lengths) {
+  if (engine == Engine::Springs) {
+    springs = EnabledSprings(model, settings);
+    lengths.clear();
+    for (const Edge& spring : springs) {
+      lengths.push_back(
+          Length(model.start[static_cast<std::size_t>(spring.a)] - model.start[static_cast<std::size_t>(spring.b)]));
+    }
+    return;
+  }
+  Topology topology = BuildTopology(model.start.size(), model.triangles);
+  lengths.assign(topology.edges.size(), 0);
+  for (std::size_t side = 0; side < topology.sideEdges.size(); ++side) {
+    double& length = lengths[static_cast<std::size_t>(topology.sideEdges[side])];
+    const Vec2 &from = model.material[side], &to = model.material[side % 3 == 2 ? side - 2 : side + 1];
+    if (length == 0) length = std::hypot(to.x - from.x, to.y - from.y);
+  }
+  springs = std::move(topology.edges);
 }
 
 }  // namespace
@@ -83,6 +101,7 @@ struct World::Impl {
   struct Cloth {
     ClothModel model;
     std::vector<Edge> springs;         // of the enabled kinds
+    std::vector<double> restLengths;   // of these
     std::vector<std::int32_t> pinned;  // ascending
     std::vector<Vec3> positions, previous, velocities;
     std::vector<Vec3> lastFrame;
@@ -108,7 +127,7 @@ void World::Impl::Build() {
   cloths.clear();
   for (std::size_t c = 0; c < models.size(); ++c) {
     Cloth cloth;
-    cloth.springs = SpringsOf(models[c], scene->cloths[c], scene->simulation.engine);
+    FindSprings(models[c], scene->cloths[c], scene->simulation.engine, cloth.springs, cloth.restLengths);
     cloth.pinned = PinnedVertices(scene->cloths[c]);
     cloth.model = std::move(models[c]);
     cloths.push_back(std::move(cloth));
@@ -122,7 +141,7 @@ void World::Impl::Configure(std::shared_ptr<const Scene> changed) {
   engine->configure(engineState.get(), *scene);
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (scene->simulation.engine == Engine::Springs)
-      cloths[c].springs = EnabledSprings(cloths[c].model, scene->cloths[c]);
+      FindSprings(cloths[c].model, scene->cloths[c], Engine::Springs, cloths[c].springs, cloths[c].restLengths);
     cloths[c].pinned = PinnedVertices(scene->cloths[c]);
   }
 }
@@ -379,6 +398,7 @@ ClothView World::Cloth(int index) const {
   view.uv_ = cloth.model.uv;
   view.triangles_ = cloth.model.triangles;
   view.springs_ = cloth.springs;
+  view.lengths_ = cloth.restLengths;
   view.pinned_ = cloth.pinned;
   return view;
 }

@@ -48,6 +48,10 @@ struct Sheet {
   Image Paint(Painter& painter, const View& seen) const {
     ClothShape shape = cloth.Shape();
     shape.rest = rest;
+    std::vector<double> lengths;
+    for (const Edge& s : shape.springs)
+      lengths.push_back(Length(rest[static_cast<std::size_t>(s.a)] - rest[static_cast<std::size_t>(s.b)]));
+    shape.restLengths = lengths;
     shape.velocities = velocities;
     shape.pinned = pinned;
     return Must(painter.Paint(scene, std::vector<ClothShape>{shape}, seen));

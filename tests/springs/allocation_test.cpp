@@ -60,12 +60,12 @@ TEST_CASE("measuring does not allocate once it is warm") {
   CurvatureMeter curvature;
   ContactFinder contacts;
   const auto measure = [&] {
-    MeasureStretch(cloth.positions(), cloth.rest(), cloth.springs(), a, b);
+    MeasureStretch(cloth.positions(), cloth.springs(), cloth.restLengths(), a, b);
     MeasureSpeed(cloth.velocities(), a);
     curvature.Measure(cloth.positions(), cloth.triangles(), a);
     contacts.Find({&contactCloth, 1}, world.scene().spheres, world.scene().planes);
     ratios.clear();
-    AppendStretch(cloth.positions(), cloth.rest(), cloth.springs(), ratios);
+    AppendStretch(cloth.positions(), cloth.springs(), cloth.restLengths(), ratios);
     Percentile(ratios, 0.99);
   };
   measure();

@@ -101,6 +101,23 @@ TEST_CASE("A world runs cloths of every shape, and shows them as they are") {
   CHECK(world.StateHash() == hash);
 }
 
+TEST_CASE("Lengths at rest are those of the flat fabric, wherever the cloth starts") {
+  // A disc that starts half as large as it was cut.
+  Scene scene = MeshScene();
+  LoadedMesh shrunk = *scene.cloths[0].loaded;
+  const RestMesh flat = shrunk.mesh;
+  for (Vec3& p : shrunk.mesh.positions) p = 0.5 * p;
+  scene.cloths[0].loaded = std::make_shared<const LoadedMesh>(shrunk);
+  const World world(scene);
+  const ClothView cloth = world.Cloth(0);
+  REQUIRE(cloth.restLengths().size() == cloth.springs().size());
+  for (std::size_t s = 0; s < cloth.springs().size(); ++s) {
+    const auto [a, b] = cloth.springs()[s];
+    const Vec3 way = flat.positions[static_cast<std::size_t>(a)] - flat.positions[static_cast<std::size_t>(b)];
+    CHECK(cloth.restLengths()[s] == doctest::Approx(Length(way)));
+  }
+}
+
 TEST_CASE("Points of a cloth have names, as files write them") {
   for (const Scene& scene : {Fabric(Shape::Grid), Fabric(Shape::Disc), MeshScene()}) {
     const ClothSettings& cloth = scene.cloths[0];
