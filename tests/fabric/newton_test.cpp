@@ -113,8 +113,8 @@ TEST_CASE("with enough iterations the fast solver ends where the reference does"
       for (int step = 0; step < 40; ++step) {
         std::vector<Vec3> y = s.Begin(), exact = y;
         const double start = s.Distance(y, s.position);
-        const NewtonResult result =
-            s.fast.Solve(y, {.maxIterations = 60, .maxLinearIterations = 60, .tolerance = 1e-4});
+        const NewtonResult result = s.fast.Solve(y, s.fast.objective().Energy(y),
+                                                 {.maxIterations = 60, .maxLinearIterations = 60, .tolerance = 1e-4});
         REQUIRE(result.converged);
         if (step % 8 == 7) {
           REQUIRE(s.reference.Solve(exact).converged);
@@ -136,14 +136,15 @@ TEST_CASE("each iteration lowers the energy: more of them never end higher") {
     if (step % 10 == 9) {
       for (int iterations = 1; iterations <= 12; ++iterations) {
         y = ahead;
-        s.fast.Solve(y, {.maxIterations = iterations, .maxLinearIterations = 8, .tolerance = 1e-12});
+        s.fast.Solve(y, s.fast.objective().Energy(y),
+                     {.maxIterations = iterations, .maxLinearIterations = 8, .tolerance = 1e-12});
         const double energy = s.reference.Energy(y);
         CHECK(energy <= last + 1e-9 * std::abs(last));
         last = energy;
       }
     }
     y = ahead;
-    s.fast.Solve(y, {});
+    s.fast.Solve(y, s.fast.objective().Energy(y), {});
     s.Accept(y);
   }
 }
