@@ -91,19 +91,23 @@ void FabricEngine::Blow(double time, std::span<const Gust> gusts) {
   const double density = wind.airDensity > 0 || !gusty ? wind.airDensity : WindSettings().airDensity;
   if (density == 0) return;
   const Air<double> properties{density, wind.dragCoefficient, kSkinDrag, wind.liftCoefficient};
-  ForRange(executor_, model_.triangles.size(), [&](int t) {
-    const Triangle& tri = model_.triangles[Index(t)];
-    const auto at = [&](std::int32_t v) { return From<double>(position_[Index(v)]); };
-    const auto way = [&](std::int32_t v) { return position_[Index(v)] - previous_[Index(v)]; };
-    const Vec3 velocity = (way(tri.a) + way(tri.b) + way(tri.c)) / (3 * h_);
-    windLoads_[Index(t)] =
-        MakeWindLoad(properties, From<double>(air), at(tri.a), at(tri.b), at(tri.c), From<double>(velocity));
+  const int triangles = static_cast<int>(model_.triangles.size());
+  executor_.ForChunks(Chunks(triangles), [&](int chunk) {
+    BestKernels().windLoads({.begin = chunk * kRowsPerChunk,
+                             .end = std::min((chunk + 1) * kRowsPerChunk, triangles),
+                             .triangles = model_.triangles.data(),
+                             .x = position_.data(),
+                             .previous = previous_.data(),
+                             .h = h_,
+                             .air = properties,
+                             .wind = air,
+                             .load = windLoads_.data()});
   });
   ForRange(executor_, position_.size(), [&](int v) {
     for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
-      const WindLoad<double>& load = windLoads_[Index(model_.corners.entry[Index(e)] / 3)];
-      loads_[Index(v)].stiffness += load.drag * (1 / (3 * h_));
-      loads_[Index(v)].force += ToVec3(load.drag * load.wind + load.lift) / 3;
+      const VertexLoad& load = windLoads_[Index(model_.corners.entry[Index(e)] / 3)];
+      loads_[Index(v)].stiffness += load.stiffness;
+      loads_[Index(v)].force += load.force;
     }
   });
 }

@@ -76,8 +76,8 @@ class FabricEngine {
   std::vector<Vec3> position_, previous_;
   std::vector<Vec3> predicted_, next_;
   std::vector<VertexLoad> loads_;
-  std::vector<WindLoad<double>> windLoads_;  // per triangle
-  std::vector<std::int32_t> touched_;        // of CollideBall
+  std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners
+  std::vector<std::int32_t> touched_;  // of CollideBall
   EngineCounts counts_;
 };
 

@@ -30,7 +30,8 @@ inline Columns Transposed(const Columns& a) {
 }
 /// `a` plus `s` on the diagonal.
 inline void StoreBlock(Columns a, Real s, Real* block) {
-  for (int k = 0; k < 3; ++k) a.c[k].v[k] += s;
+  constexpr Real kUnit[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  for (int k = 0; k < 3; ++k) a.c[k] += Floats4::Load(kUnit[k]) * Floats4(s);
   a.c[0].Store(block);
   a.c[1].Store(block + 3);
   for (int r = 0; r < 3; ++r) block[6 + r] = a.c[2][r];

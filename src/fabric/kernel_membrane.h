@@ -9,20 +9,28 @@ struct Triangles {
   DeformationGradient<Doubles> f;
 };
 
-inline Triangles LoadTriangles(const MembraneArgs& a, int first, int count) {
+/// What lead from their first corners to the others.
+struct Edges {
+  Vector3<Doubles> first, second;
+};
+inline Edges LoadEdges(const Triangle* triangles, const Vec3* x, int first, int count) {
   alignas(64) double edge[6][kLanes];
   for (int i = 0; i < kLanes; ++i) {
-    const Triangle& t = a.triangles[first + (i < count ? i : count - 1)];
-    const Vec3 &x0 = a.x[t.a], &x1 = a.x[t.b], &x2 = a.x[t.c];
+    const Triangle& t = triangles[first + (i < count ? i : count - 1)];
+    const Vec3 &x0 = x[t.a], &x1 = x[t.b], &x2 = x[t.c];
     edge[0][i] = x1.x - x0.x, edge[1][i] = x1.y - x0.y, edge[2][i] = x1.z - x0.z;
     edge[3][i] = x2.x - x0.x, edge[4][i] = x2.y - x0.y, edge[5][i] = x2.z - x0.z;
   }
-  const Vector3<Doubles> e1{Doubles::Load(edge[0]), Doubles::Load(edge[1]), Doubles::Load(edge[2])};
-  const Vector3<Doubles> e2{Doubles::Load(edge[3]), Doubles::Load(edge[4]), Doubles::Load(edge[5])};
+  return {{Doubles::Load(edge[0]), Doubles::Load(edge[1]), Doubles::Load(edge[2])},
+          {Doubles::Load(edge[3]), Doubles::Load(edge[4]), Doubles::Load(edge[5])}};
+}
+
+inline Triangles LoadTriangles(const MembraneArgs& a, int first, int count) {
+  const Edges edges = LoadEdges(a.triangles, a.x, first, count);
   Triangles triangles;
   triangles.rest.area = Doubles::Load(a.area + first);
   for (int k = 0; k < 4; ++k) triangles.rest.inverse[k] = Doubles::Load(a.inverse[k] + first);
-  triangles.f = Deformation(triangles.rest, Vector3<Doubles>{}, e1, e2);
+  triangles.f = Deformation(triangles.rest, Vector3<Doubles>{}, edges.first, edges.second);
   return triangles;
 }
 
@@ -55,13 +63,12 @@ inline Vector3<Floats> ToFloats(const Vector3<Doubles>& v) {
 
 /// Calls body(first, count) for kLanes triangles at a time.
 template <class Body>
-inline void ForTriangles(const MembraneArgs& a, Body&& body) {
-  for (int first = a.begin; first < a.end; first += kLanes)
-    body(first, a.end - first < kLanes ? a.end - first : kLanes);
+inline void ForTriangles(int begin, int end, Body&& body) {
+  for (int first = begin; first < end; first += kLanes) body(first, end - first < kLanes ? end - first : kLanes);
 }
 
 [[gnu::flatten]] void MembraneStrains(const MembraneArgs& a) {
-  ForTriangles(a, [&](int first, int count) {
+  ForTriangles(a.begin, a.end, [&](int first, int count) {
     const MembraneStrain<Doubles> strain = GreenStrain(LoadTriangles(a, first, count).f);
     for (int i = 0; i < count; ++i) {
       a.startStrain[0][first + i] = strain.e11[i];
@@ -97,7 +104,7 @@ MembraneTangent<T> TangentOf(const StableNeoHookean<T>& law, const DeformationGr
   constexpr int kSums = kTrianglePad / kLanes;
   Doubles sums[kSums];
   int next = 0;
-  ForTriangles(a, [&](int first, int count) {
+  ForTriangles(a.begin, a.end, [&](int first, int count) {
     const Triangles t = LoadTriangles(a, first, count);
     Doubles energy = t.rest.area * StressOf(law, t.f, LoadDamping(a, first)).energy;
     for (int i = count; i < kLanes; ++i) energy.v[i] = 0;
@@ -116,7 +123,7 @@ double MembraneEnergy(const MembraneArgs& a) {
 
 template <bool withTangent>
 [[gnu::flatten]] void DerivativesBy(const MembraneArgs& a, const auto& law, const auto& floatLaw) {
-  ForTriangles(a, [&](int first, int count) {
+  ForTriangles(a.begin, a.end, [&](int first, int count) {
     const Triangles t = LoadTriangles(a, first, count);
     const MembraneDamping<Doubles> damping = LoadDamping(a, first);
     const TriangleGradient<Doubles> gradient = CornerGradient(t.rest, StressOf(law, t.f, damping));

@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "fabric/energy/air.h"
 #include "fabric/energy/membrane.h"
 #include "fabric/real.h"
+#include "math/vector3.h"
 #include "percale/mesh.h"
 #include "percale/scene.h"
 #include "percale/vec3.h"
@@ -36,6 +38,35 @@ struct MembraneArgs {
   double compression;      ///< How often buckling, over the length of the step [1/s].
   Vec3* gradient;          ///< Out: by corner a, b, c of each triangle [N].
   Real* hessian;  ///< Out: per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m]; then one Real.
+};
+
+/// What pulls at a vertex beside gravity over one step, quadratic in its way w = y - x: energy ½ wᵀ B w - f·w [J].
+struct VertexLoad {
+  Matrix3<double> stiffness;  ///< B, symmetric and without negative eigenvalues [N/m].
+  Vec3 force;                 ///< f [N].
+};
+
+/// The wind on some triangles, of any cloths. Arrays are from the first triangle or vertex of all on.
+struct WindArgs {
+  int begin, end;
+  const Triangle* triangles;
+  const Vec3* x;         ///< Positions [m].
+  const Vec3* previous;  ///< A step before [m].
+  double h;              ///< Of the step [s].
+  Air<double> air;
+  Vec3 wind;         ///< [m/s]
+  VertexLoad* load;  ///< Out: per triangle what it loads each of its corners with.
+};
+
+/// Some rows of the matrix of plates.
+struct PlateArgs {
+  int begin, end;
+  const std::int32_t* first;
+  const std::int32_t* column;
+  const double* value;          ///< In compressed rows [N/m].
+  const std::uint8_t* isPlate;  ///< Per row: 0 where it does not count.
+  const Vec3* x;                ///< Positions [m].
+  Vec3* force;                  ///< Out, in rows that count: the row times the positions [N].
 };
 
 /// Some rows of the matrix. Arrays are from the first row, block or triangle of all on.
@@ -84,6 +115,9 @@ struct Kernels {
   void (*membraneGradient)(const MembraneArgs&);
   /// Writes the gradient and the second derivative, whose eigenvalues are bounded from below.
   void (*membraneTangent)(const MembraneArgs&);
+  /// Of each row the sum of value times way from its own vertex; returns that of value times squared way [J].
+  double (*plateForces)(const PlateArgs&);
+  void (*windLoads)(const WindArgs&);
   /// Writes the blocks. What a membrane does to a vertex and to its neighbours adds up to nothing, as no translation
   /// strains it: so the block on the diagonal follows from the others.
   void (*assemble)(const AssembleArgs&);

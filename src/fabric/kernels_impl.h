@@ -23,7 +23,9 @@ using Floats = Pack<float, kLanes, Level>;
 
 #include "fabric/kernel_assemble.h"
 #include "fabric/kernel_membrane.h"
+#include "fabric/kernel_plates.h"
 #include "fabric/kernel_rows.h"
+#include "fabric/kernel_wind.h"
 
 extern const Kernels kKernels;
 const Kernels kKernels = {
@@ -32,6 +34,8 @@ const Kernels kKernels = {
     .membraneEnergy = MembraneEnergy,
     .membraneGradient = MembraneDerivatives<false>,
     .membraneTangent = MembraneDerivatives<true>,
+    .plateForces = PlateForces,
+    .windLoads = WindLoads,
     .assemble = Assemble,
     .multiply = Multiply,
     .residual = Residual,

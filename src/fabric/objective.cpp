@@ -39,7 +39,7 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
     padded->assign(triangles + kTrianglePad, 0);
   }
   for (std::size_t t = 0; t < triangles; ++t) {
-    area_[t] = model.rest[t].area;
+    area_[t] = model.rest[t].area * model.strength[t];
     for (std::size_t k = 0; k < 4; ++k) inverse_[k][t] = model.rest[t].inverse[k];
   }
   triangleGradient_.resize(3 * triangles);
@@ -80,6 +80,8 @@ double Objective::Sum(int count, Body&& body) {
 void Objective::Begin(const StepSettings& step) {
   step_ = step;
   std::copy(model_.buckling.begin(), model_.buckling.end(), buckling_.begin());
+  // A patch counts as so much more membrane.
+  for (std::size_t t = 0; t < model_.rest.size(); ++t) area_[t] = model_.rest[t].area * model_.strength[t];
   executor_.ForChunks(static_cast<int>(batches_.size()), [&](int batch) {
     const MembraneArgs arguments = Arguments(step.start, batch);
     if (arguments.damping != 0) kernels_.membraneStrain(arguments);
@@ -174,18 +176,14 @@ double Objective::BendingEnergy(std::span<const Vec3> y) {
 double Objective::PlateEnergy(std::span<const Vec3> y) {
   const ScalarMatrix& q = model_.plates;
   return -0.25 * Sum(model_.vertexCount, [&](int begin, int end) {
-    double sum = 0;
-    for (int v = begin; v < end; ++v) {
-      if (!model_.plate[Index(v)]) continue;
-      Vec3 force;
-      for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
-        const Vec3 way = y[Index(q.column[Index(k)])] - y[Index(v)];
-        force += q.value[Index(k)] * way;
-        sum += q.value[Index(k)] * Dot(way, way);
-      }
-      plateForce_[Index(v)] = force;
-    }
-    return sum;
+    return kernels_.plateForces({.begin = begin,
+                                 .end = end,
+                                 .first = q.first.data(),
+                                 .column = q.column.data(),
+                                 .value = q.value.data(),
+                                 .isPlate = model_.plate.data(),
+                                 .x = y.data(),
+                                 .force = plateForce_.data()});
   });
 }
 

@@ -17,12 +17,6 @@
 
 namespace percale::fabric {
 
-/// What pulls at a vertex beside gravity over one step, quadratic in its way w = y - x: energy ½ wᵀ B w - f·w [J].
-struct VertexLoad {
-  Matrix3<double> stiffness;  ///< B, symmetric and without negative eigenvalues [N/m].
-  Vec3 force;                 ///< f [N].
-};
-
 /// The settings of one step.
 struct StepSettings {
   double h = 0;                        ///< Length [s].

@@ -175,6 +175,93 @@ TEST_CASE("strains at the start of a step are those of the triangles, and no oth
   }
 }
 
+TEST_CASE("the wind's kernel agrees with the load of each triangle") {
+  const double h = 1.0 / 90;
+  const Air<double> air{1.2, 1.1, 0.01, 0.3};
+  for (const int count : kCounts) {
+    std::vector<VertexLoad> first;
+    for (const Kernels* kernels : RunnableKernels()) {
+      CAPTURE(kernels->name);
+      Triangles s(count);
+      std::vector<Vec3> previous = s.x;
+      for (Vec3& x : previous) x += Vec3{s.random.NextUnit(), s.random.NextUnit(), s.random.NextUnit()} * 0.1;
+      std::vector<VertexLoad> loads(Index(count) + 1);
+      kernels->windLoads({.begin = 0,
+                          .end = count,
+                          .triangles = s.triangles.data(),
+                          .x = s.x.data(),
+                          .previous = previous.data(),
+                          .h = h,
+                          .air = air,
+                          .wind = {1, -2, 3},
+                          .load = loads.data()});
+      CHECK(loads.back().force == Vec3{});
+      for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+        const Triangle& tri = s.triangles[t];
+        Vec3 velocity;
+        for (const std::int32_t v : {tri.a, tri.b, tri.c}) velocity += (s.x[Index(v)] - previous[Index(v)]) / (3 * h);
+        const auto at = [&](std::int32_t v) { return From<double>(s.x[Index(v)]); };
+        const WindLoad<double> load =
+            MakeWindLoad(air, {1, -2, 3}, at(tri.a), at(tri.b), at(tri.c), From<double>(velocity));
+        const Vec3 off = loads[t].force - ToVec3(load.drag * load.wind + load.lift) / 3;
+        CHECK(Dot(off, off) < 1e-20 * (1 + Dot(loads[t].force, loads[t].force)));
+        for (std::size_t k = 0; k < 9; ++k) {
+          CHECK(loads[t].stiffness.m[k] == doctest::Approx(load.drag.m[k] / (3 * h)).epsilon(1e-10));
+        }
+      }
+      if (first.empty()) first = loads;
+      for (std::size_t t = 0; t < loads.size(); ++t) {
+        CHECK(loads[t].force == first[t].force);
+        for (std::size_t k = 0; k < 9; ++k) CHECK(loads[t].stiffness.m[k] == first[t].stiffness.m[k]);
+      }
+    }
+  }
+}
+
+TEST_CASE("the force of plates is the product of their matrix, where they are") {
+  const test::Sheet sheet = test::Disc(5);
+  const ScalarMatrix matrix = test::ConstantPart(sheet, {});
+  SplitMix64 random(11);
+  std::vector<Vec3> x;
+  std::vector<std::uint8_t> isPlate;
+  for (int v = 0; v < sheet.vertices(); ++v) {
+    x.push_back({random.NextUnit(), random.NextUnit(), random.NextUnit()});
+    isPlate.push_back(v % 5 != 2);
+  }
+  std::vector<Vec3> first;
+  double firstSum = 0;
+  for (const Kernels* kernels : RunnableKernels()) {
+    CAPTURE(kernels->name);
+    std::vector<Vec3> force(x.size(), {7, 7, 7});
+    const double sum = kernels->plateForces({.begin = 3,
+                                             .end = sheet.vertices(),
+                                             .first = matrix.first.data(),
+                                             .column = matrix.column.data(),
+                                             .value = matrix.value.data(),
+                                             .isPlate = isPlate.data(),
+                                             .x = x.data(),
+                                             .force = force.data()});
+    double expectedSum = 0;
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      if (v < 3 || !isPlate[v]) {
+        CHECK(force[v] == Vec3{7, 7, 7});
+        continue;
+      }
+      Vec3 expected;
+      for (std::int32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
+        const Vec3 way = x[Index(matrix.column[Index(k)])] - x[v];
+        expected += way * matrix.value[Index(k)];
+        expectedSum += matrix.value[Index(k)] * Dot(way, way);
+      }
+      CHECK(Length(force[v] - expected) <= 1e-12 * (1 + Length(expected)));
+    }
+    CHECK(sum == doctest::Approx(expectedSum));
+    if (first.empty()) first = force, firstSum = sum;
+    CHECK(force == first);
+    CHECK(sum == firstSum);
+  }
+}
+
 TEST_CASE("the matrix is the sum of the triangles' blocks, and symmetric") {
   const test::Sheet sheet = test::Disc(4);
   const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);

@@ -222,6 +222,21 @@ TEST_CASE("A patch acts on a running cloth: what is heavier hangs lower") {
   CHECK(heavy.Cloth(0).positions()[middle].y < plain.Cloth(0).positions()[middle].y - 0.005);
 }
 
+TEST_CASE("A patch of weaker weave stretches more") {
+  Scene scene = Fabric(Shape::Grid);
+  scene.cloths[0].orientation = Orientation::Vertical;
+  for (int i = 0; i < 11; ++i) scene.cloths[0].pinned.push_back({i, 8});
+  Patch patch;
+  patch.stretch = 0.05;
+  World plain(scene);
+  scene.patches = {patch};
+  World weak(scene);
+  for (int frame = 0; frame < 90; ++frame) plain.Step(), weak.Step();
+  // rho g h^2 / 2 over the stiffness, twenty times as much.
+  const double hangs = plain.Cloth(0).rest()[5].y - plain.Cloth(0).positions()[5].y;
+  CHECK(weak.Cloth(0).rest()[5].y - weak.Cloth(0).positions()[5].y == doctest::Approx(20 * hangs).epsilon(0.2));
+}
+
 TEST_CASE("Another mesh in the same file is another cloth") {
   const Scene scene = MeshScene();
   CHECK_FALSE(EffectOf(scene, MeshScene()));  // read again
