@@ -62,7 +62,7 @@ CaseResult VerifyCantilever(const Effort& effort) {
   Cantilever light(Elements(40 * effort.mesh, 4)), heavy(Elements(120 * effort.mesh, 4));
   Plot plot;
   plot.title = "Cantilever: closed form (lines) and measured (marks)";
-  plot.x.label = "x / L", plot.y.label = "drop / L";
+  plot.x.label = "x / L", plot.y.label = "height / L";
   for (const double gamma : kGammas) {
     Cantilever& strip = gamma < kHeavy ? light : heavy;
     const bool still = strip.Load(gamma);
@@ -71,11 +71,13 @@ CaseResult VerifyCantilever(const Effort& effort) {
     result.readings.push_back(
         Relative("H/W at Γ = " + FormatNumber(gamma), still ? tip.y / tip.x : NAN, law.drop / law.reach, 0.02));
     if (std::find(std::begin(kShown), std::end(kShown), gamma) == std::end(kShown)) continue;
-    plot.series.push_back({"Γ = " + FormatNumber(gamma), law.shape, false});
+    Series line{"Γ = " + FormatNumber(gamma), {}, false};
+    for (const PlotPoint& point : law.shape) line.points.push_back({point.x, -point.y});
+    plot.series.push_back(std::move(line));
     std::vector<PlotPoint> few;
     const std::vector<PlotPoint> shape = strip.Shape();
     const std::size_t every = std::max<std::size_t>(1, shape.size() / 16);
-    for (std::size_t i = 0; i < shape.size(); i += every) few.push_back(shape[i]);
+    for (std::size_t i = 0; i < shape.size(); i += every) few.push_back({shape[i].x, -shape[i].y});
     plot.series.push_back({"measured", few, true});
   }
   result.plots.push_back(std::move(plot));

@@ -85,7 +85,7 @@ bool Settle(World& world, double move, int most) {
   for (int k = 0; k < most; ++k) {
     const StepReport& report = world.Step();
     if (report.divergence) return false;
-    if (report.greatestMove <= move) return true;
+    if (report.greatestMove <= move) return report.converged;
   }
   return false;
 }

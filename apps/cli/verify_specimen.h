@@ -48,7 +48,8 @@ int MiddleOf(const ClothSettings& cloth, int column);
 /// Whole elements, at least `least`.
 int Elements(double count, int least = 1);
 
-/// Steps until no vertex moves more than `move` [m] in a frame. False: it moved on for `most` frames, or diverged.
+/// Steps until no vertex moves more than `move` [m] in a frame. False: it moved on for `most` frames,
+/// diverged, or the solver could go no further.
 bool Settle(World& world, double move = 1e-9, int most = 200);
 
 /// Puts the cloth where `place` takes each vertex, pins included, with the velocity that `velocity` says there.

@@ -10,7 +10,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PERCALE = os.environ["PERCALE"]
-VERBS = {"simulate", "shot", "render", "figures", "check", "info", "doctor"}
+VERBS = {"simulate", "shot", "render", "figures", "check", "verify", "info", "doctor"}
 
 
 def commands():
