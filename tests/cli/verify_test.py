@@ -24,11 +24,11 @@ class Verify(ProgramTest):
         self.assertNotIn("Bending", names)
         row = next(line for line in lines if line.startswith("hanging_sheet"))
         self.assertRegex(row, r"0\.0028\d+ +0\.00281897 +[-+]0\.\d+ % +1 % +holds$")
-        self.assertIn("7 of 7 quantities within their gates", done.stdout)
+        self.assertIn("8 of 8 quantities within their gates", done.stdout)
         self.assertEqual(done.stderr, "")
         self.assertEqual(self.files(), ["verify", "verify/verify.html"])
         page = (self.folder / "verify/verify.html").read_text(encoding="utf-8")
-        for text in ("<!DOCTYPE html>", 'id="patch"', "percale verify --only decay", "7 of 7 quantities"):
+        for text in ("<!DOCTYPE html>", 'id="patch"', "percale verify --only decay", "8 of 8 quantities"):
             self.assertIn(text, page)
         self.assertNotRegex(page, r"(src|href)=\"(?!#|data:)")  # needs no other file
 
@@ -36,7 +36,7 @@ class Verify(ProgramTest):
         done = self.run_program("verify", "--only", FAST, "--json", "-o", "a/b")
         data = json.loads(done.stdout)
         self.assertEqual([case["name"] for case in data["cases"]], FAST.split(","))
-        self.assertEqual((data["readings"], data["holding"]), (7, 7))
+        self.assertEqual((data["readings"], data["holding"]), (8, 8))
         sheet = data["cases"][0]["readings"][0]
         self.assertAlmostEqual(sheet["expected"], 0.15 * 9.81 / (2 * 261), places=9)
         self.assertTrue(sheet["low"] <= sheet["measured"] <= sheet["high"] and sheet["holds"])
