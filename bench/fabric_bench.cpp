@@ -266,7 +266,7 @@ int BenchFabric(const FabricBenchOptions& options) {
   if (options.json) {
     std::printf("%s", Json(tables, scales, threads).c_str());
   } else {
-    std::printf("\nNanoseconds per vertex and frame of the engine at 4 x 8\n%10s %12s %12s  %s\n", "vertices",
+    std::printf("\nNanoseconds per vertex and frame of the engine at its defaults\n%10s %12s %12s  %s\n", "vertices",
                 "1 thread", (std::to_string(threads) + " threads").c_str(), "positions");
     for (const Scale& scale : scales) {
       std::printf("%10d %12.0f %12.0f  %s\n", scale.side * scale.side, scale.one, scale.many,

@@ -31,9 +31,9 @@ struct Panel {
 /// From top to bottom: the course's in its order, then Percale's own.
 std::span<const Panel> Panels();
 
-PanelContent DrawSpringsPanel, DrawParametersPanel, DrawFabricPanel, DrawSimulationPanel, DrawDampingPanel, DrawGravityPanel,
-    DrawAppearancePanel, DrawScenesPanel, DrawPresetsPanel, DrawCollisionsPanel, DrawCollidersPanel, DrawWindPanel,
-    DrawOverlaysPanel, DrawStatisticsPanel;
+PanelContent DrawSpringsPanel, DrawParametersPanel, DrawFabricPanel, DrawSimulationPanel, DrawDampingPanel,
+    DrawGravityPanel, DrawAppearancePanel, DrawScenesPanel, DrawPresetsPanel, DrawCollisionsPanel, DrawCollidersPanel,
+    DrawWindPanel, DrawOverlaysPanel, DrawStatisticsPanel;
 
 /// Width of the column at the right that holds the panels [screen unit].
 float PanelColumnWidth(const UiState& state);

@@ -148,8 +148,8 @@ struct SimulationSettings {
   bool selfCollision = true;  ///< Points of cloth keep apart, within a cloth and between cloths.
   HashFunction hash = HashFunction::Exact;
   PlaneResponse planeResponse = PlaneResponse::Interpolate;
-  int newtonIterations = 4;  ///< Engine::Fabric: at most so many per step, >= 1.
-  int linearIterations = 8;  ///< Engine::Fabric: at most so many in each of those, >= 1.
+  int newtonIterations = 3;  ///< Engine::Fabric: at most so many per step, >= 1.
+  int linearIterations = 6;  ///< Engine::Fabric: at most so many in each of those, >= 1.
   double tolerance = 1e-3;   ///< Engine::Fabric: a step is converged when the next correction would be this
                              ///< share of its first, > 0.
 };

@@ -436,7 +436,7 @@ std::vector<Parameter> MakeTable() {
 
     Simulation<&S::newtonIterations>({.name = "newton_iterations", .label = "Newton iterations", .min = 1, .max = 1000,
       .typicalMin = 1, .typicalMax = 20, .engine = kFabric,
-      .help = "At most so many corrections of a step; 4 keeps up with real time."}),
+      .help = "At most so many corrections of a step; 3 keep up with real time."}),
     Simulation<&S::linearIterations>({.name = "linear_iterations", .label = "Linear iterations", .min = 1, .max = 10000,
       .typicalMin = 1, .typicalMax = 50, .engine = kFabric,
       .help = "At most so many iterations of the linear solver for each correction."}),
