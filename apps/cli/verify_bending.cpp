@@ -25,7 +25,7 @@ class Cantilever {
   bool Load(double gamma) {
     scene_.simulation.gravity = {0, -GravityOf(gamma, settings_), 0};
     world_.Apply(scene_);
-    return Settle(world_, 1e-7);
+    return Settle(world_, 1e-6, 400);
   }
   /// From the clamp to the tip along the middle: x and drop over L.
   std::vector<PlotPoint> Shape() const {
