@@ -181,7 +181,8 @@ TEST_CASE("a step of all rows, and of any of them, is the plain one to the last 
   for (int width = 2; width <= 20; ++width) widths.push_back(width);
   for (const int numWidth : widths) {
     for (int numHeight = 2; numHeight <= 9; ++numHeight) {
-      for (const SheetShape shape : {SheetShape::Cloth, SheetShape::Coincident, SheetShape::Short, SheetShape::Extreme}) {
+      for (const SheetShape shape :
+           {SheetShape::Cloth, SheetShape::Coincident, SheetShape::Short, SheetShape::Extreme}) {
         Sheet s(numWidth, numHeight);
         Scatter(s, shape, random);
         s.windy = random.Next() % 2 == 0;
