@@ -79,8 +79,8 @@ struct ClothSettings {
   double stretchWeft = 261;        ///< The same along the weft, v [N/m], > 0.
   double poissonRatio = 0.243;     ///< Narrowing over lengthening when pulled along the warp, -1..1.
   double shear = 105;              ///< Shear modulus times thickness [N/m], > 0.
-  double bendWarp = 4e-5;          ///< Moment per width and curvature along the warp [N m], >= 0.
-  double bendWeft = 4e-5;          ///< The same along the weft [N m], >= 0.
+  double bendWarp = 1.2e-5;        ///< Moment per width and curvature along the warp [N m], >= 0.
+  double bendWeft = 1.2e-5;        ///< The same along the weft [N m], >= 0.
   double stretchDamping = 0.002;   ///< Of strain rates, as a time: stress = stiffness (strain + this * rate) [s], >= 0.
   double bendDamping = 0.002;      ///< The same for curvature [s], >= 0.
   double strainLimit = 0.2;        ///< Strain from which the yarns lock: the stress grows with its square, > 0.

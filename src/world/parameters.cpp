@@ -320,7 +320,7 @@ std::vector<Parameter> MakeTable() {
       .help = "Force per width and angle of shear; a loose weave 30, cotton 105."}),
     Cloth<&C::bendWarp>({.name = "bend_warp", .label = "Bend, warp", .unit = "N m", .min = 0, .max = 1e3,
       .typicalMin = 1e-6, .typicalMax = 1e-2, .logarithmic = true, .engine = kFabric,
-      .help = "Moment per width and curvature along the warp; silk 4e-6, cotton 3e-5, denim 2e-4."}),
+      .help = "Moment per width and curvature along the warp; silk 4e-6, cotton 1.2e-5, denim 2e-4."}),
     Cloth<&C::bendWeft>({.name = "bend_weft", .label = "Bend, weft", .unit = "N m", .min = 0, .max = 1e3,
       .typicalMin = 1e-6, .typicalMax = 1e-2, .logarithmic = true, .engine = kFabric,
       .help = "The same along the weft, across the warp."}),
