@@ -1,5 +1,7 @@
 #include "fabric/kernels.h"
 
+#include "core/processor.h"
+
 namespace percale::fabric {
 
 namespace baseline {
@@ -17,14 +19,9 @@ extern const Kernels kKernels;
 std::vector<const Kernels*> RunnableKernels() {
   std::vector<const Kernels*> kernels = {&baseline::kKernels};
 #if defined(PERCALE_X86_KERNELS)
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) {
-    kernels.push_back(&v3::kKernels);
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512cd")) {
-      kernels.push_back(&v4::kKernels);
-    }
-  }
+  const InstructionSet best = BestInstructionSet();
+  if (best >= InstructionSet::V3) kernels.push_back(&v3::kKernels);
+  if (best >= InstructionSet::V4) kernels.push_back(&v4::kKernels);
 #endif
   return kernels;
 }
