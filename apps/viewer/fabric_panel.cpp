@@ -5,11 +5,13 @@
 
 namespace percale::viewer {
 
-/// All that the description table says of the continuum.
+/// All that the description table says of the continuum: what acts at once, then what makes another cloth.
 void DrawFabricPanel(Session& session, UiState& state) {
-  for (const Parameter& parameter : Parameters()) {
-    if (parameter.group == "cloth" && parameter.engine == Engine::Fabric) {
-      ParameterRow(session, state, parameter.group, parameter.name, state.cloth);
+  for (const Effect effect : {Effect::Live, Effect::Rebuild}) {
+    for (const Parameter& parameter : Parameters()) {
+      if (parameter.group == "cloth" && parameter.engine == Engine::Fabric && parameter.effect == effect) {
+        ParameterRow(session, state, parameter.group, parameter.name, state.cloth);
+      }
     }
   }
 }
