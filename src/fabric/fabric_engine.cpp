@@ -33,14 +33,18 @@ FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes,
   position_ = previous_ = predicted_ = next_ = model_.start;
   loads_.resize(count);
   windLoads_.resize(model_.triangles.size());
-  Configure(scene);
-  Reset();
+  SetUp();
 }
 
 void FabricEngine::Configure(const Scene& scene) {
   scene_ = scene;
-  h_ = scene.TimeStep();
   TakeMaterials(scene, model_);
+  SetUp();
+}
+
+/// What follows from the scene beside the model.
+void FabricEngine::SetUp() {
+  h_ = scene_.TimeStep();
   UpdatePins();
   solver_.SetUp(h_, free_);
 }

@@ -60,6 +60,7 @@ class FabricEngine {
   VertexRef FindOutOfBounds() const;
 
  private:
+  void SetUp();
   void UpdatePins();
   void Hold(std::span<const Handle> handles);
   void Blow(double time, std::span<const Gust> gusts);

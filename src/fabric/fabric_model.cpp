@@ -144,16 +144,7 @@ void AssemblePlates(FabricModel& model) {
         }
       }
     }
-    std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      if (k > 0 && row[k].first == row[k - 1].first) {
-        model.plates.value.back() += row[k].second;
-      } else {
-        model.plates.column.push_back(row[k].first);
-        model.plates.value.push_back(row[k].second);
-      }
-    }
-    model.plates.first.push_back(static_cast<std::int32_t>(model.plates.column.size()));
+    AppendRow(model.plates, row);
   }
 }
 

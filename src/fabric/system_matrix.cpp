@@ -88,23 +88,25 @@ std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& patt
   return blocks;
 }
 
+void AppendRow(ScalarMatrix& matrix, std::vector<std::pair<std::int32_t, double>>& row) {
+  std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    if (k > 0 && row[k].first == row[k - 1].first) {
+      matrix.value.back() += row[k].second;
+    } else {
+      matrix.column.push_back(row[k].first);
+      matrix.value.push_back(row[k].second);
+    }
+  }
+  matrix.first.push_back(static_cast<std::int32_t>(matrix.column.size()));
+}
+
 ScalarMatrix MakeScalarMatrix(int rows, std::span<const ScalarEntry> entries) {
   std::vector<std::vector<std::pair<std::int32_t, double>>> byRow(rows);
   for (const ScalarEntry& entry : entries) byRow[entry.row].push_back({entry.column, entry.value});
   ScalarMatrix matrix;
   matrix.first.push_back(0);
-  for (auto& row : byRow) {
-    std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      if (k > 0 && row[k].first == row[k - 1].first) {
-        matrix.value.back() += row[k].second;
-      } else {
-        matrix.column.push_back(row[k].first);
-        matrix.value.push_back(row[k].second);
-      }
-    }
-    matrix.first.push_back(static_cast<std::int32_t>(matrix.column.size()));
-  }
+  for (auto& row : byRow) AppendRow(matrix, row);
   return matrix;
 }
 

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/executor.h"
@@ -50,6 +51,8 @@ struct ScalarMatrix {
 
   int rows() const { return static_cast<int>(first.size()) - 1; }
 };
+/// Appends a row of (column, value), in any order; entries of one column add up in the order in which they are given.
+void AppendRow(ScalarMatrix& matrix, std::vector<std::pair<std::int32_t, double>>& row);
 struct ScalarEntry {
   std::int32_t row = 0, column = 0;
   double value = 0;
