@@ -56,7 +56,7 @@ HEAVY = [
     (r"(imgui|imgui_.*|backends/imgui_.*)\.h", "Dear ImGui", ["apps/viewer/*"]),
     (r"png\.h", "libpng", ["render/*.cpp"]),
     (r"doctest/.*|doctest\.h", "doctest", ["tests/*"]),
-    (r"(unsupported/)?Eigen/.*", "Eigen", ["src/math/*.cpp", "src/fabric/*.cpp", "tests/*.cpp"]),
+    (r"(unsupported/)?Eigen/.*", "Eigen", ["src/math/*.cpp", "src/fabric/*.cpp", "tests/*"]),
 ]
 
 STANDARD = set("""

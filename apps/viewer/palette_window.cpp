@@ -29,13 +29,15 @@ int AtTheEnd(ImGuiInputTextCallbackData* data) {
   return 0;
 }
 
-void DrawBox(Palette& palette) {
+void DrawBox(const Session& session, UiState& state) {
+  Palette& palette = state.palette;
   char text[200];
   std::snprintf(text, sizeof text, "%s", palette.query.c_str());
   ImGui::SetNextItemWidth(-1);
   if (palette.focus && palette.asked++ % kAskEvery == 0) ImGui::SetKeyboardFocusHere();
   ImGui::InputTextWithHint("##query", "a command, a scene, a shader, or a parameter with its value: ks 800", text,
                            sizeof text, ImGuiInputTextFlags_CallbackAlways, &AtTheEnd, &palette);
+  NoteBox(session, state, "palette query");
   if (ImGui::IsItemActive()) palette.focus = false;
   if (palette.query != text) palette.selected = 0;
   palette.query = text;
@@ -87,7 +89,7 @@ void DrawPalette(Session& session, UiState& state, float windowWidth, float heig
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   ImGui::Begin("Palette", nullptr, kFlags);
   ImGui::PopStyleVar();
-  DrawBox(palette);
+  DrawBox(session, state);
   const std::vector<Match> matches = FindCommands(palette.commands, palette.query, state.kept.recentCommands);
   const int count = static_cast<int>(matches.size());
   int run = -1;

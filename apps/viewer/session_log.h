@@ -61,6 +61,8 @@
 ///   palette  visible, and while it is: query, selected ("action pause", "set cloth.ks", "shader Phong",
 ///            "scene FILE", "preset silk", "panel Wind"), count of what the query means
 ///   focus    name: the control that has the keyboard; empty: none
+///   hover    name: the control that the pointer is over; empty: none
+///   active   name: the control that is held down, edited, or takes what is typed; empty: none
 ///   hint     text: keys to begin with; empty: the user has found them all
 ///   tooltip  control, text: the explanation of a control is shown
 ///   preset   name: a preset is being applied

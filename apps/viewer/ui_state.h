@@ -82,6 +82,8 @@ struct UiState {
   KeyboardIn keyboardIn = KeyboardIn::Picture;
   int keyboardMoves = 0;       ///< Pictures until it goes there; the window there has to know before.
   std::string focusedControl;  ///< That has the keyboard, by its name in the log.
+  std::string hoveredControl;  ///< That the pointer is over.
+  std::string activeControl;   ///< That is held down, edited, or takes what is typed.
 
   std::string hintLogged, tooltipLogged;  ///< The hint, and whose tooltip, the log has.
 

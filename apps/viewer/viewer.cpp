@@ -196,10 +196,11 @@ class Viewer {
     }
   }
 
-  void LogFocus() {
-    if (state_.focusedControl == loggedFocus_) return;
-    loggedFocus_ = state_.focusedControl;
-    session_.log().Write(LogLine("focus").Text("name", loggedFocus_));
+  /// Writes that another control than in the last picture has the keyboard, the pointer or what is typed.
+  void LogControl(const char* event, const std::string& name, std::string& logged) {
+    if (name == logged) return;
+    logged = name;
+    session_.log().Write(LogLine(event).Text("name", name));
   }
 
   /// The part of the window that shows the picture: all but the panels [screen unit].
@@ -241,9 +242,13 @@ class Viewer {
     session_.HoldChanges(hand_.dragging() || ImGui::IsMouseDown(ImGuiMouseButton_Left));
     DrawGizmo();
     state_.focusedControl.clear();
+    state_.hoveredControl.clear();
+    state_.activeControl.clear();
     if (!state_.jump.empty()) state_.kept.panelsVisible = true;
     DrawPanels();
-    LogFocus();
+    LogControl("focus", state_.focusedControl, loggedFocus_);
+    LogControl("hover", state_.hoveredControl, loggedHover_);
+    LogControl("active", state_.activeControl, loggedActive_);
     // What the keys and panels have just changed shows at once.
     session_.Update(Now());
     DrawScene();
@@ -423,7 +428,7 @@ class Viewer {
   std::int64_t smoothedStep_ = 0;
   bool typing_ = false;
   bool controlBusy_ = false;  // A control was in use, or a list open, in the last picture.
-  std::string loggedFocus_;
+  std::string loggedFocus_, loggedHover_, loggedActive_;
   std::filesystem::path settingsFile_, rememberedScene_;
 };
 

@@ -384,6 +384,8 @@ void NoteBox(const Session& session, UiState& state, std::string_view name) {
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
   state.boxes[std::string(name)] = {min.x, min.y, max.x - min.x, max.y - min.y};
   if (state.keyboardIn != KeyboardIn::Picture && ImGui::IsItemFocused()) state.focusedControl = name;
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem)) state.hoveredControl = name;
+  if (ImGui::IsItemActive()) state.activeControl = name;
 }
 
 void NoteWindow(const Session& session, UiState& state, std::string_view name) {

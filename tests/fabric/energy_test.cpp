@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,9 +18,11 @@
 #include "fabric/energy/inertia.h"
 #include "fabric/energy/membrane.h"
 #include "math/splitmix64.h"
+#include "tests/fabric/decompositions.h"
 
 using namespace percale;
 using namespace percale::fabric;
+using namespace percale::test;
 
 namespace {
 
@@ -66,7 +68,7 @@ Eigen::Matrix3d Dense(const M& a) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a.m);
 }
 double LeastEigenvalue(const MatrixXd& a) {
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvalues()(0);
+  return SpectrumOf(a).values(0);
 }
 
 /// Central difference of fourth order.
@@ -242,9 +244,9 @@ void CheckMembrane(const Law& law, SplitMix64& random, const More&... more) {
 
 /// The projection that an eigen-decomposition gives.
 MatrixXd Projected(const MatrixXd& a, double floor) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(a);
-  const VectorXd raised = solver.eigenvalues().cwiseMax(-floor);
-  return solver.eigenvectors() * raised.asDiagonal() * solver.eigenvectors().transpose();
+  const Spectrum spectrum = SpectrumOf(a);
+  const VectorXd raised = spectrum.values.cwiseMax(-floor);
+  return spectrum.vectors * raised.asDiagonal() * spectrum.vectors.transpose();
 }
 
 }  // namespace
@@ -371,7 +373,7 @@ TEST_CASE("a strip cut at any angle has the modulus of the closed form") {
       columns << along.x * across.x, across.x * across.x, along.y * across.x, across.y * across.x, 0, 0,
           along.x * across.y, across.x * across.y, along.y * across.y, across.y * across.y, 0, 0;
       const Eigen::Vector2d g = columns.transpose() * Flat(Points{s.pu, s.pv});
-      const Eigen::Vector2d step = (columns.transpose() * h * columns).ldlt().solve(-g);
+      const Eigen::Vector2d step = -SolutionOf(columns.transpose() * h * columns, g);
       p += step(0), q += step(1);
     }
     const double energy = Stress(law, deformation(p, q)).energy;
@@ -826,7 +828,7 @@ TEST_CASE("fitted bending is finite, positive and bounded where the six points d
     Eigen::Matrix3d dense;
     dense << m.diagonal[0], m.next[0], m.next[2], m.next[0], m.diagonal[1], m.next[1], m.next[2], m.next[1],
         m.diagonal[2];
-    const Eigen::Vector3d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(dense).eigenvalues();
+    const Eigen::Vector3d eigenvalues = SpectrumOf(dense).values;
     CHECK(eigenvalues(0) > 0);
     CHECK(eigenvalues(2) <= 1.0001 * kFitCap * (plain.diagonal[0] + plain.diagonal[1] + plain.diagonal[2]));
   }

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -13,6 +13,7 @@
 #include "fabric/multigrid.h"
 #include "fabric/prolongation.h"
 #include "fabric/system_matrix.h"
+#include "tests/fabric/decompositions.h"
 #include "tests/fabric/sheet.h"
 
 using namespace percale;
@@ -177,7 +178,7 @@ TEST_CASE("the product is that of the dense matrix, and symmetric") {
     CHECK(RelativeError(ToEigen(other, n), ey - dense * ex) < 1e-6);
 
     Dense inverse = Dense::Zero(3 * n, 3 * n);
-    for (int v = 0; v < n; ++v) inverse.block<3, 3>(3 * v, 3 * v) = dense.block<3, 3>(3 * v, 3 * v).inverse();
+    for (int v = 0; v < n; ++v) inverse.block<3, 3>(3 * v, 3 * v) = InverseOf(dense.block<3, 3>(3 * v, 3 * v));
     system.matrix.Smooth(Real{.5}, y.data(), x.data(), other.data(), Serial());
     CHECK(RelativeError(ToEigen(other, n), ex + .5 * inverse * (ey - dense * ex)) < 1e-3);
     system.matrix.SmoothFromZero(Real{.5}, y.data(), other.data(), Serial());
@@ -334,13 +335,11 @@ TEST_CASE("a cycle is a symmetric and positive definite operator, and close to t
       }
       CHECK((cycle - cycle.transpose()).norm() < 1e-3 * cycle.norm());
       const Dense symmetric = .5 * (cycle + cycle.transpose());
-      const Eigen::SelfAdjointEigenSolver<Dense> alone(symmetric, Eigen::EigenvaluesOnly);
-      CHECK(alone.eigenvalues().minCoeff() > 0);
+      CHECK(SpectrumOf(symmetric).values[0] > 0);
       // Of V H: between 0 and 1 but for rounding, as Jacobi's steps are damped enough.
-      const Eigen::GeneralizedSelfAdjointEigenSolver<Dense> both(ToEigen(solver.matrix), symmetric.inverse(),
-                                                                 Eigen::EigenvaluesOnly);
-      CHECK(both.eigenvalues().minCoeff() > (pairs > 0 ? .003 : .03));
-      CHECK(both.eigenvalues().maxCoeff() < 1.01);
+      const Eigen::VectorXd both = EigenvaluesOf(ToEigen(solver.matrix), InverseOf(symmetric));
+      CHECK(both.minCoeff() > (pairs > 0 ? .003 : .03));
+      CHECK(both.maxCoeff() < 1.01);
     }
   }
 }
@@ -366,7 +365,7 @@ TEST_CASE("the solution is that of a direct solver") {
         CHECK(ToEigen(left, n).norm() < 1e-3 * ToEigen(b, n).norm());
         continue;
       }
-      const Eigen::VectorXd exact = ToEigen(solver.matrix).ldlt().solve(ToEigen(b, n));
+      const Eigen::VectorXd exact = SolutionOf(ToEigen(solver.matrix), ToEigen(b, n));
       CHECK(RelativeError(ToEigen(x, n), exact) < 2e-3);
     }
   }
@@ -494,12 +493,12 @@ TEST_CASE("the direct solve of the coarsest level") {
     CHECK((a * x - b).norm() < 1e-9 * b.norm());
 
     // With the sign of a direction turned around: what was added makes it positive definite, and no more than that.
-    const Eigen::SelfAdjointEigenSolver<Dense> eigen(a);
-    a -= 1.5 * eigen.eigenvalues()[0] * eigen.eigenvectors().col(0) * eigen.eigenvectors().col(0).transpose();
+    const Spectrum spectrum = SpectrumOf(a);
+    a -= 1.5 * spectrum.values[0] * spectrum.vectors.col(0) * spectrum.vectors.col(0).transpose();
     std::copy(a.data(), a.data() + n * n, factor.matrix());
     const double shift = factor.Factor();
     CHECK(shift > 0);
-    CHECK(shift <= 10 * std::max(.5 * eigen.eigenvalues()[0], 1e-6 * a.cwiseAbs().maxCoeff()));
+    CHECK(shift <= 10 * std::max(.5 * spectrum.values[0], 1e-6 * a.cwiseAbs().maxCoeff()));
     x = b;
     factor.Solve(x.data());
     CHECK(x.dot(b) > 0);

@@ -179,9 +179,8 @@ class Layouts(ViewerTest):
 class OwnKeys(ViewerTest):
     def test_keys_of_a_text_box_run_no_actions(self):
         with self.viewer(scene("pinned2")) as viewer:
-            viewer.click("cloth.ks box")
             since = viewer.mark()
-            viewer.xdotool("type", "--delay", "40", "pnrc")
+            viewer.type_into("cloth.ks box", "pnrc")
             for key in ("ctrl+a", "ctrl+c", "Left", "Home", "Delete"):
                 viewer.xdotool("key", key)
             # What means nothing to the box is an action all the same.

@@ -97,10 +97,11 @@ class Authoring(ViewerTest):
     def test_a_new_shader(self):
         with self.open() as viewer:
             viewer.click("button new_shader")
-            viewer.box("new shader name")
+            viewer.wait_for_active("new shader name")
             viewer.xdotool("type", "--delay", "60", "Phong")
             viewer.click("new shader create")
             viewer.box("new shader problem")  # There is one: another name is asked for.
+            viewer.wait_for_active("new shader name")
             viewer.xdotool("type", "--delay", "60", "Mine")
             since = viewer.mark()
             viewer.click("new shader create")

@@ -28,8 +28,7 @@ class HeatMaps(ViewerTest):
                 viewer.click("panel " + panel)
             viewer.click("panel Overlays")
             since = viewer.mark()
-            viewer.click("heat map high box")
-            viewer.xdotool("type", "--delay", "60", "3.5")
+            viewer.type_into("heat map high box", "3.5")
             viewer.xdotool("keydown", "Return")
             try:
                 typed = viewer.wait("heat_map", since, quantity="speed")

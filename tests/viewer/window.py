@@ -196,6 +196,7 @@ class Viewer:
         since = self.mark()
         self.xdotool("key", "ctrl+k")
         self.wait("palette", since, visible=True)
+        self.wait_for_active("palette query")
         self.xdotool("type", "--delay", "15", "--", query)
         return self.wait("palette", since, query=query, selected=command)
 
@@ -232,14 +233,39 @@ class Viewer:
         box = self.box(name)
         self.point(box["x"] + share * box["width"], box["y"] + box["height"] / 2)
 
+    def now(self, event):
+        """The control that the newest event of that kind names: that has the pointer ("hover"), or is in use ("active")."""
+        self.update()
+        return next((line["name"] for line in reversed(self.events) if line["event"] == event), "")
+
     def click(self, name):
-        self.point_at(name)
+        """Clicks on a control once the pointer is seen to be over it: what changes elsewhere may still move it."""
+        pointed = None
+        def probe():
+            nonlocal pointed
+            box = self.box(name)
+            if box is not pointed:
+                pointed = box
+                self.point_at(name)
+            return self.now("hover") == name
+        try:
+            wait_for(f"the pointer to be over {name!r}", probe)
+        except AssertionError as error:
+            raise AssertionError(f"{error}; it is over {self.now('hover')!r}; box {pointed}") from None
         self.xdotool("click", 1)
+
+    def wait_for_active(self, name):
+        """Waits until that control is held down, edited, or takes what is typed."""
+        wait_for(f"{name!r} to be in use", lambda: self.now("active") == name)
+
+    def type_into(self, name, text):
+        self.click(name)
+        self.wait_for_active(name)
+        self.xdotool("type", "--delay", "60", "--", text)
 
     def type_number(self, name, text):
         """Types into the box beside a slider, and waits until it has been taken or refused."""
-        self.click(name + " box")
-        self.xdotool("type", "--delay", "60", "--", text)
+        self.type_into(name + " box", text)
         since = self.mark()
         # Enter counts for the box only if it is down while a picture is made.
         self.xdotool("keydown", "Return")
