@@ -166,7 +166,7 @@ void PrintSummary(std::FILE* out, const World& world, const RunTotals& totals, R
   std::fprintf(out, "greatest stretch  %.6f, %.6f over the run\n", report.greatestStretch, totals.greatestStretch);
   std::fprintf(out, "kinetic energy    %.6g J\n", report.kineticEnergy);
   std::fprintf(out, "greatest move     %.6g m in the last frame\n", report.greatestMove);
-  if (report.newtonIterations > 0) {
+  if (report.newtonIterations > 0 || !report.converged) {
     std::fprintf(out, "solver            %s, residual %.2e; %d Newton, %d linear iterations in the last frame\n",
                  report.converged ? "converged" : "stopped short", report.residual, report.newtonIterations,
                  report.linearIterations);

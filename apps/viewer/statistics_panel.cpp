@@ -39,7 +39,7 @@ void DrawStatisticsPanel(Session& session, UiState& state) {
     FactRow(state, "Greatest stretch", Text("%.4f", report.greatestStretch));
     FactRow(state, "Kinetic energy", Text("%.4g J", report.kineticEnergy));
     FactRow(state, "At rest", report.atRest ? "yes" : Text("no, moves %.3g mm per frame", report.greatestMove * 1000));
-    if (report.newtonIterations > 0) {
+    if (report.newtonIterations > 0 || !report.converged) {
       FactRow(state, "Solver",
               Text("%s, residual %.1e; %d Newton, %d linear", report.converged ? "converged" : "stopped",
                    report.residual, report.newtonIterations, report.linearIterations));

@@ -32,7 +32,6 @@ FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes,
   free_.assign(count, 1);
   position_ = previous_ = predicted_ = next_ = model_.start;
   loads_.resize(count);
-  windLoads_.resize(model_.triangles.size());
   SetUp();
 }
 
@@ -94,6 +93,7 @@ void FabricEngine::Blow(double time, std::span<const Gust> gusts) {
   }
   const double density = wind.airDensity > 0 || !gusty ? wind.airDensity : WindSettings().airDensity;
   if (density == 0) return;
+  windLoads_.resize(model_.triangles.size());  // before the first wind there are none
   const Air<double> properties{density, wind.dragCoefficient, kSkinDrag, wind.liftCoefficient};
   const int triangles = static_cast<int>(model_.triangles.size());
   executor_.ForChunks(Chunks(triangles), [&](int chunk) {

@@ -77,7 +77,7 @@ class FabricEngine {
   std::vector<Vec3> position_, previous_;
   std::vector<Vec3> predicted_, next_;
   std::vector<VertexLoad> loads_;
-  std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners
+  std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
   std::vector<std::int32_t> touched_;  // of CollideBall
   EngineCounts counts_;
 };

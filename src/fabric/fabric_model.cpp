@@ -54,6 +54,7 @@ void Append(const RestMesh& mesh, double warpAngle, FabricModel& model) {
 /// Hinges, and which belong to which triangle.
 void FindHinges(const Topology& topology, FabricModel& model) {
   std::vector<std::int32_t> hingeOfEdge(topology.edges.size(), -1);
+  model.hinges.reserve(topology.edges.size());
   for (std::size_t e = 0; e < topology.edges.size(); ++e) {
     const auto& [t0, t1] = topology.edgeTriangles[e];
     if (t0 < 0 || t1 < 0) continue;
@@ -146,6 +147,8 @@ void AssemblePlates(FabricModel& model) {
     }
     AppendRow(model.plates, row);
   }
+  model.plates.column.shrink_to_fit();
+  model.plates.value.shrink_to_fit();
 }
 
 /// Makes the corners that agree on a vertex and its place in the material one point.
@@ -164,6 +167,7 @@ void FindChart(FabricModel& model) {
     return std::tie(a.vertex, a.at.x, a.at.y, a.corner) < std::tie(b.vertex, b.at.x, b.at.y, b.corner);
   });
   std::vector<std::int32_t> pointOf(order.size());
+  model.chart.reserve(Index(model.vertexCount));
   for (std::size_t k = 0; k < order.size(); ++k) {
     const bool same = k > 0 && order[k].vertex == order[k - 1].vertex && order[k].at == order[k - 1].at;
     if (!same) model.chart.push_back(order[k].at);
@@ -173,6 +177,7 @@ void FindChart(FabricModel& model) {
     model.chart.clear();
     return;
   }
+  model.chartTriangles.reserve(model.triangles.size());
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     model.chartTriangles.push_back({pointOf[3 * t], pointOf[3 * t + 1], pointOf[3 * t + 2]});
   }
@@ -231,6 +236,7 @@ FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes) {
   }
   model.firstVertex.push_back(model.vertexCount);
   model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
+  model.rest.reserve(model.triangles.size());
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const auto triangle = static_cast<std::int64_t>(t);
     model.rest.push_back(
@@ -315,6 +321,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
                                  : MakeBendingMatrix(stiffness, points, areaAcross);
   }
   AssemblePlates(model);
+  if (!model.anyHinges) model.bending = {};
   model.buckling.assign(model.triangles.size(), 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& tri = model.triangles[t];

@@ -75,7 +75,8 @@ struct FabricModel {
   std::vector<double> strength;                ///< Per triangle: of its membrane over that of its cloth, by patches.
   std::vector<double> pressure;                ///< Per cloth [Pa].
   std::vector<double> bendDamping;             ///< Per cloth [s].
-  std::vector<BendingMatrix<double>> bending;  ///< Per triangle, for the angles of its three hinges [N m].
+  std::vector<BendingMatrix<double>> bending;  ///< Per triangle, for the angles of its three hinges [N m]; none
+                                               ///< where no cloth bends by them.
   std::vector<std::uint8_t> plate;             ///< Per vertex: 1 where the cloth bends by BendingLaw::Quadratic.
   ScalarMatrix plates;                         ///< Bending of all cloths as a quadratic of the positions, each row
                                                ///< with an entry on the diagonal [N/m].

@@ -52,6 +52,7 @@ NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
 void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
   std::vector<std::uint8_t> pinned(free.size());
   for (std::size_t v = 0; v < free.size(); ++v) pinned[v] = free[v] ? 0 : 1;
+  objective_.TakeMaterials();
   matrix_.SetUp(pattern_, ConstantPart(model_, h), pinned);
   const MaterialMesh material{model_.triangles, model_.chartTriangles, model_.chart};
   multigrid_.SetUp(matrix_, MakeHierarchy(pattern_, material, pinned));

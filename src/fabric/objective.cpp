@@ -39,18 +39,23 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
     padded->assign(triangles + kTrianglePad, 0);
   }
   for (std::size_t t = 0; t < triangles; ++t) {
-    area_[t] = model.rest[t].area * model.strength[t];
     for (std::size_t k = 0; k < 4; ++k) inverse_[k][t] = model.rest[t].inverse[k];
   }
   triangleGradient_.resize(3 * triangles);
   triangleHessian_.assign(kHessianReals * triangles, 0);
-  startAngle_.resize(model.hinges.size());
-  angle_.resize(model.hinges.size());
-  moment_.resize(model.hinges.size());
-  hinge_.resize(model.hinges.size());
   plateForce_.resize(static_cast<std::size_t>(model.vertexCount));
   const auto items = std::max(static_cast<std::size_t>(model.vertexCount), triangles);
   chunkSums_.resize(std::max(batches_.size(), items / kRowsPerChunk + 1));
+  TakeMaterials();
+}
+
+void Objective::TakeMaterials() {
+  // A patch counts as so much more membrane.
+  for (std::size_t t = 0; t < model_.rest.size(); ++t) area_[t] = model_.rest[t].area * model_.strength[t];
+  std::copy(model_.buckling.begin(), model_.buckling.end(), buckling_.begin());
+  const std::size_t hinges = model_.anyHinges ? model_.hinges.size() : 0;
+  for (std::vector<double>* perHinge : {&startAngle_, &angle_, &moment_}) perHinge->resize(hinges);
+  hinge_.resize(hinges);
 }
 
 /// Which blocks of triangles each block of the matrix is the sum of.
@@ -79,9 +84,6 @@ double Objective::Sum(int count, Body&& body) {
 
 void Objective::Begin(const StepSettings& step) {
   step_ = step;
-  std::copy(model_.buckling.begin(), model_.buckling.end(), buckling_.begin());
-  // A patch counts as so much more membrane.
-  for (std::size_t t = 0; t < model_.rest.size(); ++t) area_[t] = model_.rest[t].area * model_.strength[t];
   executor_.ForChunks(static_cast<int>(batches_.size()), [&](int batch) {
     const MembraneArgs arguments = Arguments(step.start, batch);
     if (arguments.damping != 0) kernels_.membraneStrain(arguments);

@@ -32,6 +32,9 @@ class Objective {
   Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor,
             const Kernels& kernels = BestKernels());
 
+  /// Follows changes of the model's materials. Allocates, as the other functions do not.
+  void TakeMaterials();
+
   /// Takes over the settings of a step; their spans must stay.
   void Begin(const StepSettings& step);
 
@@ -76,7 +79,7 @@ class Objective {
   std::vector<double> area_, inverse_[4], startStrain_[3], buckling_;
   std::vector<Vec3> triangleGradient_;
   RealVector triangleHessian_;
-  // Per hinge:
+  // Per hinge, where any cloth bends by them:
   std::vector<double> startAngle_, angle_, moment_;
   std::vector<Hinge<double>> hinge_;
   std::vector<Vec3> plateForce_;  // per vertex, where PlateEnergy was called last; zero where hinges bend [N]

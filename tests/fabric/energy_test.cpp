@@ -747,6 +747,27 @@ TEST_CASE("a free edge carries no moment: a narrow strip bends with the rigidity
   for (const double entry : LatticePatch(any, kStiffness, {false, false, false}).matrix.diagonal) CHECK(entry == 0);
 }
 
+TEST_CASE("what bends in one direction alone gives no energy away, whichever edges are free") {
+  SplitMix64 random(31);
+  for (const BendingStiffness& b : {BendingStiffness{0, 0, 1, 0}, {1, 0, 0, 0}, {1e-5, 0, 1, 0}, {0, 0, 0, 1}}) {
+    for (int i = 0; i < kStates; ++i) {
+      const double skew = i == 0 ? 0 : Within(random, -0.3, 0.3), u = i == 0 ? 1 : Within(random, 0.1, 2);
+      const Corners any{{{0, 0}, {u, skew}, {-skew, 1}}};
+      for (int free = 0; free < 8; ++free) {
+        const std::array<bool, 3> across{(free & 1) == 0, (free & 2) == 0, (free & 4) == 0};
+        const BendingMatrix<double> m = LatticePatch(any, b, across).matrix, whole = LatticePatch(any, b).matrix;
+        Eigen::Matrix3d dense;
+        dense << m.diagonal[0], m.next[0], m.next[2], m.next[0], m.diagonal[1], m.next[1], m.next[2], m.next[1],
+            m.diagonal[2];
+        const double scale = whole.diagonal[0] + whole.diagonal[1] + whole.diagonal[2];
+        const VectorXd eigenvalues = SpectrumOf(dense).values;
+        CHECK(eigenvalues(0) >= -1e-9 * scale);
+        CHECK(eigenvalues(2) <= (1 + 1e-9) * scale);
+      }
+    }
+  }
+}
+
 TEST_CASE("on a jittered mesh a quadratic surface has nearly a plate's energy") {
   constexpr int kSide = 24;
   SplitMix64 random(15);

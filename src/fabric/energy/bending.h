@@ -90,10 +90,12 @@ BendingMatrix<T> MakeBendingMatrix(const BendingStiffness& b, const MaterialPoin
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) m[i][j] = area * (g[0][i] * bg[0][j] + g[1][i] * bg[1][j] + g[2][i] * bg[2][j]);
   }
+  const double trace = m[0][0] + m[1][1] + m[2][2];
   for (int k = 0; k < 3; ++k) {
     if (areaAcross[k] > 0) continue;
-    // One step of elimination. A pivot of rounding only, of the third free edge, has nothing left to give.
-    const double pivot = m[k][k], trace = m[0][0] + m[1][1] + m[2][2];
+    // One step of elimination. A pivot of rounding only has nothing left to give: that of the third free edge, or of
+    // the second one where the sheet bends in one direction alone.
+    const double pivot = m[k][k];
     const double row[3] = {m[k][0], m[k][1], m[k][2]};
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
