@@ -4,11 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <optional>
+#include <span>
 #include <string>
 #include <thread>
 
 #include "bench/xpbd_cloth.h"
+#include "core/memory.h"
 #include "core/text.h"
 #include "fabric/newton.h"
 #include "fabric/reference_solver.h"
@@ -24,7 +25,10 @@ using fabric::FabricModel;
 constexpr double kFrame = 1.0 / 60;
 constexpr Vec3 kGravity{0, -9.8, 0};
 constexpr int kFrames = 60;
+constexpr int kSizes[] = {32, 64, 100};  // for error against time
+constexpr int kScaleSizes[] = {32, 100, 316, 1000};
 constexpr int kMeasuredFrames = 20;  // the last ones, over whose mean stretch methods are compared
+constexpr int kScaleFrames = 10;     // the same for all sizes: the cost changes as the sheet falls
 constexpr double kGoal = 0.05;       // of the stretch beyond 1
 // Vertices along a side beyond which the direct solver does less, and nothing: it would take minutes.
 constexpr int kSmallDirect = 50, kLargestDirect = 128;
@@ -58,15 +62,6 @@ Scene HangingSheet(int side, double stiffness) {
   return scene;
 }
 
-/// What a method reached and what it took.
-struct Run {
-  std::string method;
-  std::string setting;
-  double milliseconds = 0;           // per frame: the median
-  std::vector<double> stretch = {};  // 99th percentile, of each measured frame
-  double error = 0;                  // of the mean of that beyond 1
-};
-
 double Median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
@@ -74,9 +69,9 @@ double Median(std::vector<double> values) {
 
 /// Runs a method frame by frame and measures.
 template <class Frame, class Positions>
-Run Measure(const std::string& method, const std::string& setting, const FabricModel& model, int frames, Frame&& frame,
-            Positions&& positions) {
-  Run run;
+FabricRun Measure(const std::string& method, const std::string& setting, const FabricModel& model, int frames,
+                  Frame&& frame, Positions&& positions) {
+  FabricRun run;
   run.method = method;
   run.setting = setting;
   std::vector<double> times;
@@ -90,8 +85,8 @@ Run Measure(const std::string& method, const std::string& setting, const FabricM
   return run;
 }
 
-Run MeasureEngine(const Scene& base, const FabricModel& model, int newton, int linear, double tolerance, int threads,
-                  int frames) {
+FabricRun MeasureEngine(const Scene& base, const FabricModel& model, int newton, int linear, double tolerance,
+                        int threads, int frames) {
   Scene scene = base;
   scene.simulation.newtonIterations = newton;
   scene.simulation.linearIterations = linear;
@@ -102,14 +97,14 @@ Run MeasureEngine(const Scene& base, const FabricModel& model, int newton, int l
       [&] { return world.Cloth(0).positions(); });
 }
 
-Run MeasureXpbd(const FabricModel& model, std::span<const std::uint8_t> free, int substeps, int frames) {
+FabricRun MeasureXpbd(const FabricModel& model, std::span<const std::uint8_t> free, int substeps, int frames) {
   XpbdCloth cloth(model, free);
   return Measure(
       "XPBD", std::to_string(substeps) + " substeps", model, frames, [&] { cloth.Frame(kFrame, substeps, kGravity); },
       [&] { return cloth.positions(); });
 }
 
-Run MeasureDirect(const FabricModel& model, std::span<const std::uint8_t> free, int newton, int frames) {
+FabricRun MeasureDirect(const FabricModel& model, std::span<const std::uint8_t> free, int newton, int frames) {
   fabric::ReferenceSolver solver(model);
   std::vector<Vec3> position = model.start, previous = position, predicted = position, y = position;
   const std::vector<fabric::VertexLoad> loads(position.size());
@@ -127,14 +122,7 @@ Run MeasureDirect(const FabricModel& model, std::span<const std::uint8_t> free, 
                  [&] { return std::span<const Vec3>(position); });
 }
 
-struct Table {
-  int side = 0;
-  double stiffness = 0;
-  double converged = 0;  // stretch
-  std::vector<Run> runs;
-};
-
-void Compare(Run& run, const Run& converged) {
+void Compare(FabricRun& run, const FabricRun& converged) {
   const auto mean = [](const std::vector<double>& values) {
     double sum = 0;
     for (const double value : values) sum += value;
@@ -143,16 +131,20 @@ void Compare(Run& run, const Run& converged) {
   run.error = std::abs(mean(run.stretch) - mean(converged.stretch)) / (mean(converged.stretch) - 1);
 }
 
-Table MeasureTable(int side, double stiffness, int frames) {
+FabricTable MeasureTable(int side, double stiffness, int threads, int frames) {
   const Scene scene = HangingSheet(side, stiffness);
   const FabricModel model = fabric::BuildModel(scene, std::vector<RestMesh>{MakeGridMesh(scene.cloths[0])});
   std::vector<std::uint8_t> free(static_cast<std::size_t>(model.vertexCount), 1);
   for (const GridPoint& pin : scene.cloths[0].pinned) free[static_cast<std::size_t>(pin.j * side + pin.i)] = 0;
-  Table table{side, stiffness, 0, {}};
-  const Run converged = MeasureEngine(scene, model, 200, 200, 1e-6, 1, frames);
+  FabricTable table{side, stiffness, 0, {}};
+  const FabricRun converged = MeasureEngine(scene, model, 40, 60, 1e-6, threads, frames);
   table.converged = converged.stretch.back();
   for (const auto& [newton, linear] : {std::pair{1, 4}, {2, 6}, {3, 6}, {4, 8}, {8, 16}}) {
-    table.runs.push_back(MeasureEngine(scene, model, newton, linear, 1e-3, 1, frames));
+    FabricRun run = MeasureEngine(scene, model, newton, linear, 1e-3, 1, frames);
+    if (threads > 1) {
+      run.manyMilliseconds = MeasureEngine(scene, model, newton, linear, 1e-3, threads, frames).milliseconds;
+    }
+    table.runs.push_back(std::move(run));
   }
   if (side <= kSmallDirect) {
     for (const int newton : {1, 2, 4}) table.runs.push_back(MeasureDirect(model, free, newton, frames));
@@ -162,118 +154,192 @@ Table MeasureTable(int side, double stiffness, int frames) {
   for (const int substeps : {10, 20, 40, 80, 160, 320}) {
     table.runs.push_back(MeasureXpbd(model, free, substeps, frames));
   }
-  for (Run& run : table.runs) Compare(run, converged);
+  for (FabricRun& run : table.runs) Compare(run, converged);
   return table;
 }
 
-/// The fastest run of a method whose error is within the goal, or none.
-const Run* Fastest(const Table& table, const std::string& method) {
-  const Run* best = nullptr;
-  for (const Run& run : table.runs) {
-    if (run.method == method && run.error <= kGoal && (!best || run.milliseconds < best->milliseconds)) best = &run;
-  }
-  return best;
-}
-
-struct Scale {
-  int side = 0;
-  double one = 0, many = 0;  // ns per vertex and frame
-  bool equal = false;
-};
-
-Scale MeasureScale(int side, int threads, int frames) {
-  Scale scale{side, 0, 0, false};
+FabricScale MeasureScale(int side, int threads, int frames) {
+  FabricScale scale;
+  scale.side = side;
   const Scene scene = HangingSheet(side, 1);
   std::uint64_t hashes[2] = {};
   for (int run = 0; run < 2; ++run) {
     World world(scene, {.threads = run == 0 ? 1 : threads});
     std::vector<double> times;
+    double newton = 0, linear = 0;
     for (int f = 0; f < frames; ++f) {
       const auto start = std::chrono::steady_clock::now();
-      world.Step();
+      const StepReport report = world.Step();
       times.push_back(Seconds(start) * 1e9 / (static_cast<double>(side) * side));
+      newton += report.newtonIterations, linear += report.linearIterations;
     }
     (run == 0 ? scale.one : scale.many) = Median(times);
+    scale.newton = newton / frames, scale.linear = linear / frames;
     hashes[run] = world.StateHash();
   }
+  scale.peakMemory = PeakMemory();
   scale.equal = hashes[0] == hashes[1];
   return scale;
 }
 
-std::string Json(const std::vector<Table>& tables, const std::vector<Scale>& scales, int threads) {
-  std::string text = "{\"threads\": " + std::to_string(threads) + ", \"pareto\": [";
+const FabricScale* ScaleAt(const FabricBench& bench, int side) {
+  for (const FabricScale& scale : bench.scales) {
+    if (scale.side == side) return &scale;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const FabricRun* FabricTable::Fastest(const std::string& method) const {
+  const FabricRun* best = nullptr;
+  for (const FabricRun& run : runs) {
+    if (run.method == method && run.error <= kGoal && (!best || run.milliseconds < best->milliseconds)) best = &run;
+  }
+  return best;
+}
+
+double FabricTable::Faster(const std::string& method, bool& least) const {
+  const FabricRun *engine = Fastest("engine"), *other = Fastest(method);
+  least = !other;
+  for (const FabricRun& run : runs) {
+    if (least && run.method == method && (!other || run.milliseconds > other->milliseconds)) other = &run;
+  }
+  return engine && other ? other->milliseconds / engine->milliseconds : 0;
+}
+
+bool FabricBench::Equal() const {
+  return std::all_of(scales.begin(), scales.end(), [](const FabricScale& scale) { return scale.equal; });
+}
+
+std::vector<FabricTarget> FabricBench::Targets() const {
+  std::vector<FabricTarget> targets;
+  for (const FabricTable& table : tables) {
+    const FabricRun* const engine = table.Fastest("engine");
+    if (table.side != 100 || table.stiffness != 1 || !engine) continue;
+    const std::string what = "a frame of 10,000 vertices within 5 %, engine " + engine->setting;
+    targets.push_back(
+        {what + ", one thread", "< 16 ms", Text("%.1f ms", engine->milliseconds), engine->milliseconds < 16});
+    if (threads == 2) {
+      const double many = engine->manyMilliseconds;
+      targets.push_back({what + ", two threads", "< 9 ms", Text("%.1f ms", many), many < 9});
+    }
+    for (const char* method : {"XPBD", "Newton, direct"}) {
+      bool least = false;
+      const double faster = table.Faster(method, least);
+      if (faster > 0) {
+        targets.push_back({std::string("times faster than ") + method + " there", ">= 8",
+                           Text(least ? "more than %.0f" : "%.0f", faster), faster >= 8});
+      }
+    }
+  }
+  const FabricScale *small = ScaleAt(*this, 100), *large = ScaleAt(*this, 1000);
+  if (small && large) {
+    double ratio = 0;
+    for (const FabricScale& scale : scales) {
+      if (scale.side >= small->side) ratio = std::max(ratio, scale.one / small->one);
+    }
+    targets.push_back(
+        {"greatest time per vertex beyond 10,000, over the time there", "<= 1.5", Text("%.2f", ratio), ratio <= 1.5});
+    const double gigabytes = static_cast<double>(large->peakMemory) / 1e9;
+    if (large->peakMemory > 0)
+      targets.push_back({"memory of 1,000,000 vertices", "<= 1 GB", Text("%.1f GB", gigabytes), gigabytes <= 1});
+  }
+  if (!scales.empty()) {
+    targets.push_back({"positions for one and several threads", "equal bits", Equal() ? "equal" : "differ", Equal()});
+  }
+  return targets;
+}
+
+FabricBench MeasureFabric(const FabricBenchOptions& options) {
+  FabricBench bench;
+  bench.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  const int frames = std::max(options.frames > 0 ? options.frames : kFrames, kMeasuredFrames + 1);
+  const auto sizes = [&](std::span<const int> standard) {
+    return options.sizes.empty() ? std::vector<int>(standard.begin(), standard.end()) : options.sizes;
+  };
+  for (const int side : sizes(kSizes)) {
+    for (const double stiffness : kStiffnesses) {
+      std::fprintf(stderr, "%d x %d, stiffness x %g\n", side, side, stiffness);
+      bench.tables.push_back(MeasureTable(side, stiffness, bench.threads, frames));
+    }
+  }
+  for (const int side : sizes(kScaleSizes)) {
+    std::fprintf(stderr, "cost per vertex: %d x %d\n", side, side);
+    bench.scales.push_back(MeasureScale(side, bench.threads, std::min(frames, kScaleFrames)));
+  }
+  return bench;
+}
+
+std::string FormatTables(const FabricBench& bench) {
+  std::string text;
+  const std::string many = std::to_string(bench.threads) + " threads";
+  for (const FabricTable& table : bench.tables) {
+    text += Text("%d x %d vertices, %g times cotton's stiffness; stretch of the converged run %.4f\n", table.side,
+                 table.side, table.stiffness, table.converged);
+    text += Text("%-15s %-14s %12s %12s %10s\n", "method", "setting", "ms, 1 thread", many.c_str(), "error");
+    for (const FabricRun& run : table.runs) {
+      const std::string other = run.manyMilliseconds > 0 ? Text("%.2f", run.manyMilliseconds) : "";
+      text += Text("%-15s %-14s %12.2f %12s %9.1f%%\n", run.method.c_str(), run.setting.c_str(), run.milliseconds,
+                   other.c_str(), 100 * run.error);
+    }
+    for (const char* method : {"Newton, direct", "XPBD"}) {
+      bool least = false;
+      const double faster = table.Faster(method, least);
+      if (faster > 0) {
+        text += Text("within %.0f %%: %s%.1f times faster than %s%s\n", 100 * kGoal, least ? "more than " : "", faster,
+                     method, least ? ", which did not get there" : "");
+      }
+    }
+    text += "\n";
+  }
+  text += "The engine at its defaults: time per vertex and frame\n";
+  text += Text("%10s %12s %12s %8s %8s %18s  %s\n", "vertices", "ns, 1 thread", many.c_str(), "Newton", "linear",
+               "ns per Newton it.", "positions");
+  for (const FabricScale& scale : bench.scales) {
+    text += Text("%10d %12.0f %12.0f %8.1f %8.1f %18.0f  %s\n", scale.side * scale.side, scale.one, scale.many,
+                 scale.newton, scale.linear, scale.newton > 0 ? scale.one / scale.newton : 0,
+                 scale.equal ? "equal to the last bit" : "DIFFER");
+  }
+  text += "\n";
+  for (const FabricTarget& target : bench.Targets()) {
+    text += Text("%-62s %10s  %-14s %s\n", target.what.c_str(), target.goal.c_str(), target.measured.c_str(),
+                 target.holds ? "holds" : "MISSED");
+  }
+  return text;
+}
+
+std::string FormatJson(const FabricBench& bench) {
+  std::string text = "{\"threads\": " + std::to_string(bench.threads) + ", \"error_against_time\": [";
   const char* separator = "";
-  for (const Table& table : tables) {
-    for (const Run& run : table.runs) {
+  for (const FabricTable& table : bench.tables) {
+    for (const FabricRun& run : table.runs) {
       text += separator + std::string("\n  {\"side\": ") + std::to_string(table.side) +
               ", \"stiffness\": " + FormatNumber(table.stiffness) + ", \"method\": " + Quote(run.method) +
-              ", \"setting\": " + Quote(run.setting) + ", \"ms_per_frame\": " + FormatNumber(run.milliseconds) +
-              ", \"error\": " + FormatNumber(run.error) + "}";
+              ", \"setting\": " + Quote(run.setting) + ", \"ms_per_frame\": " + FormatNumber(run.milliseconds);
+      if (run.manyMilliseconds > 0) text += ", \"ms_per_frame_threads\": " + FormatNumber(run.manyMilliseconds);
+      text += ", \"error\": " + FormatNumber(run.error) + "}";
       separator = ",";
     }
   }
   text += "\n], \"scaling\": [";
   separator = "";
-  for (const Scale& scale : scales) {
+  for (const FabricScale& scale : bench.scales) {
     text += separator + std::string("\n  {\"side\": ") + std::to_string(scale.side) +
             ", \"ns_per_vertex_one_thread\": " + FormatNumber(scale.one) +
-            ", \"ns_per_vertex_threads\": " + FormatNumber(scale.many) + "}";
+            ", \"ns_per_vertex_threads\": " + FormatNumber(scale.many) + ", \"newton\": " + FormatNumber(scale.newton) +
+            ", \"linear\": " + FormatNumber(scale.linear) + ", \"peak_bytes\": " + std::to_string(scale.peakMemory) +
+            "}";
+    separator = ",";
+  }
+  text += "\n], \"targets\": [";
+  separator = "";
+  for (const FabricTarget& target : bench.Targets()) {
+    text += separator + std::string("\n  {\"what\": ") + Quote(target.what) + ", \"goal\": " + Quote(target.goal) +
+            ", \"measured\": " + Quote(target.measured) + ", \"holds\": " + (target.holds ? "true" : "false") + "}";
     separator = ",";
   }
   return text + "\n]}\n";
-}
-
-void Print(const Table& table) {
-  std::printf("\n%d x %d vertices, %g times cotton's stiffness; stretch of the converged run %.4f\n", table.side,
-              table.side, table.stiffness, table.converged);
-  std::printf("%-15s %-14s %12s %10s\n", "method", "setting", "ms per frame", "error");
-  for (const Run& run : table.runs) {
-    std::printf("%-15s %-14s %12.2f %9.1f%%\n", run.method.c_str(), run.setting.c_str(), run.milliseconds,
-                100 * run.error);
-  }
-  const Run* engine = Fastest(table, "engine");
-  for (const char* method : {"Newton, direct", "XPBD"}) {
-    const Run* other = Fastest(table, method);
-    if (engine && other)
-      std::printf("within %.0f %%: %.1f times faster than %s\n", 100 * kGoal,
-                  other->milliseconds / engine->milliseconds, method);
-    else if (engine)
-      std::printf("within %.0f %%: %s did not get there\n", 100 * kGoal, method);
-  }
-}
-
-}  // namespace
-
-int BenchFabric(const FabricBenchOptions& options) {
-  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const int frames = std::max(options.frames > 0 ? options.frames : kFrames, kMeasuredFrames + 1);
-  std::vector<Table> tables;
-  for (const int side : options.sizes) {
-    for (const double stiffness : kStiffnesses) {
-      std::fprintf(stderr, "%d x %d, stiffness x %g\n", side, side, stiffness);
-      tables.push_back(MeasureTable(side, stiffness, frames));
-      if (!options.json) Print(tables.back());
-      std::fflush(stdout);
-    }
-  }
-  std::vector<Scale> scales;
-  bool equal = true;
-  for (const int side : {32, 100, 316, 1000}) {
-    std::fprintf(stderr, "scaling: %d x %d\n", side, side);
-    scales.push_back(MeasureScale(side, threads, side > 500 ? 5 : side > 200 ? 15 : 60));
-    equal = equal && scales.back().equal;
-  }
-  if (options.json) {
-    std::printf("%s", Json(tables, scales, threads).c_str());
-  } else {
-    std::printf("\nNanoseconds per vertex and frame of the engine at its defaults\n%10s %12s %12s  %s\n", "vertices",
-                "1 thread", (std::to_string(threads) + " threads").c_str(), "positions");
-    for (const Scale& scale : scales) {
-      std::printf("%10d %12.0f %12.0f  %s\n", scale.side * scale.side, scale.one, scale.many,
-                  scale.equal ? "equal to the last bit" : "DIFFER");
-    }
-  }
-  return equal ? 0 : 1;
 }
 
 }  // namespace percale::bench

@@ -253,4 +253,11 @@ std::filesystem::path NumberedName(const std::filesystem::path& stem, const std:
   }
 }
 
+Status WriteFile(const fs::path& file, std::string_view content) {
+  Result<AtomicFile> out = AtomicFile::Create(file);
+  if (!out) return out.diagnostics();
+  if (Status written = out->Write(content); !written) return written;
+  return out->Commit();
+}
+
 }  // namespace percale

@@ -67,6 +67,9 @@ std::string PathText(const std::filesystem::path& path);
 /// The ending of the name, with its point, in small letters: ".csv" of "A.CSV".
 std::string LowerExtension(const std::filesystem::path& path);
 
+/// The file with that content, whole or not at all.
+Status WriteFile(const std::filesystem::path& file, std::string_view content);
+
 /// STEM-1.ENDING, STEM-2.ENDING, ...: the first that does not exist. Nor does STEM-N, which a film takes
 /// that becomes a folder of pictures.
 std::filesystem::path NumberedName(const std::filesystem::path& stem, const std::string& ending);

@@ -22,7 +22,7 @@ namespace {
 // The file, little-endian: the mark; the version; the number of bytes that follow, but for the checksum;
 // these bytes, as `Exchange` below lists them; their checksum.
 constexpr std::string_view kMark = "Percale\x1a";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kHeader = kMark.size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 36;
 
@@ -114,6 +114,11 @@ void Exchange(Stream& stream, G& gust) requires std::is_same_v<std::remove_const
   stream.Number(gust.start);
   stream.Number(gust.duration);
 }
+template <class Stream, class F>
+void Exchange(Stream& stream, F& fold) requires std::is_same_v<std::remove_const_t<F>, Fold> {
+  stream.Number(fold.rest);
+  stream.Number(fold.moved);
+}
 template <class Stream, class List>
 void ExchangeList(Stream& stream, List& list) {
   std::uint64_t count = list.size();
@@ -149,6 +154,7 @@ void ExchangeState(Stream& stream, State& state) {
     ExchangeList(stream, cloth.positions);
     ExchangeList(stream, cloth.previous);
     ExchangeList(stream, cloth.anchors);
+    ExchangeList(stream, cloth.folds);
   }
   ExchangeList(stream, state.handles);
   ExchangeList(stream, state.balls);
@@ -180,6 +186,10 @@ std::string Impossible(const WorldState& state) {
     if (cloth.anchors.size() != PinnedVertices(settings).size()) return name + " has another number of pins";
     if (!AllFinite(cloth.positions) || !AllFinite(cloth.previous) || !AllFinite(cloth.anchors))
       return name + " has a position that is no number";
+    for (const Fold& fold : cloth.folds) {
+      if (!std::isfinite(fold.rest) || !std::isfinite(fold.moved) || fold.moved < 0)
+        return name + " has a fold that is no number";
+    }
     sizes.push_back(points);
   }
   for (const Handle& handle : state.handles) {
@@ -230,10 +240,7 @@ std::string FormatCheckpoint(const WorldState& state) {
 }
 
 Status SaveCheckpoint(const std::filesystem::path& file, const WorldState& state) {
-  Result<AtomicFile> output = AtomicFile::Create(file);
-  if (!output) return output.diagnostics();
-  if (Status written = output->Write(FormatCheckpoint(state)); !written) return written;
-  return output->Commit();
+  return WriteFile(file, FormatCheckpoint(state));
 }
 
 Result<WorldState> LoadCheckpoint(const std::filesystem::path& file) {

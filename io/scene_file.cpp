@@ -344,7 +344,8 @@ class SceneReader {
         FindGroup(parts[0])->isArray && parts.size() > 1 ? group + "/" + std::string(parts[1]) : group;
     if (failed_.count(group) > 0 || failed_.count(path) > 0) return true;
     if (severity != Severity::Error) return FailedBelow(object) || FailedBelow("/simulation");
-    if (group == "/pin_motion" || group == "/patch") return FailedBelow(object) || FailedBelow("/cloth");
+    if (group == "/pin_motion" || group == "/patch" || group == "/tether")
+      return FailedBelow(object) || FailedBelow("/cloth");
     if (group != "/cloth") return false;
     for (const char* name :
          {"/width", "/height", "/num_width_points", "/num_height_points", "/pinned", "/radius", "/rings"}) {

@@ -267,11 +267,9 @@ Result<std::filesystem::path> CreateShader(const std::filesystem::path& folder, 
     const std::filesystem::path file = folder / (name + ending);
     if (std::filesystem::exists(file, error)) return MakeError(PathText(file), "exists already; choose another name");
   }
-  Result<AtomicFile> file = AtomicFile::Create(folder / (name + ".frag"));
-  if (!file) return file.diagnostics();
-  if (Status written = file->Write(kTemplate); !written) return written.diagnostics();
-  if (Status done = file->Commit(); !done) return done.diagnostics();
-  return file->target();
+  const std::filesystem::path file = folder / (name + ".frag");
+  if (Status written = WriteFile(file, kTemplate); !written) return written.diagnostics();
+  return file;
 }
 
 }  // namespace percale

@@ -112,10 +112,7 @@ Status SaveShaderValues(const std::filesystem::path& file, const UniformValues& 
   std::string text = "{";
   for (const auto& [name, value] : values)
     text += (text.size() > 1 ? ",\n  " : "\n  ") + Quote(name) + ": " + Format(value, Find(parameters, name));
-  Result<AtomicFile> output = AtomicFile::Create(file);
-  if (!output) return output.diagnostics();
-  if (Status written = output->Write(text + "\n}\n"); !written) return written;
-  return output->Commit();
+  return WriteFile(file, text + "\n}\n");
 }
 
 }  // namespace percale

@@ -1,15 +1,39 @@
-#include "bench/fabric_bench.h"
-#include "bench/springs_bench.h"
-
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <string_view>
 
+#include "apps/cli/bench_page.h"
+#include "apps/cli/pictures.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
+#include "bench/fabric_bench.h"
+#include "bench/springs_bench.h"
 #include "core/text.h"
+#include "io/atomic_file.h"
 
 namespace percale::cli {
+namespace {
+
+constexpr const char* kStandardFolder = "benchmarks";
+constexpr const char* kFabricPage = "fabric.html";
+
+int BenchFabric(const Options& options) {
+  const std::filesystem::path folder = TextPath(options.output.empty() ? kStandardFolder : options.output);
+  // A folder that cannot be written shows before the work, not after it.
+  if (const int writable = MakeWritable(folder, kFabricPage); writable != kDone) return writable;
+  const bench::FabricBench bench =
+      bench::MeasureFabric({.sizes = options.sizes, .threads = options.threads, .frames = options.frames.value_or(0)});
+  std::fputs((options.json ? bench::FormatJson(bench) : bench::FormatTables(bench)).c_str(), stdout);
+  const Status written = WriteFile(folder / kFabricPage, FormatBenchPage(bench, PERCALE_VERSION));
+  PrintDiagnostics(written.diagnostics());
+  if (!written) return kFailed;
+  if (!options.json) std::printf("\nreport            %s\n", PathText(folder / kFabricPage).c_str());
+  if (!bench.Equal()) PrintError("positions differ between numbers of threads");
+  return bench.Equal() ? kDone : kFailed;
+}
+
+}  // namespace
 
 int Bench(const Options& options) {
   constexpr std::string_view kBenchmarks[] = {"springs", "fabric"};
@@ -19,14 +43,7 @@ int Bench(const Options& options) {
                "; there are: springs, fabric");
     return kUsage;
   }
-  if (options.benchmark == "fabric") {
-    bench::FabricBenchOptions bench;
-    if (!options.sizes.empty()) bench.sizes = options.sizes;
-    bench.threads = options.threads;
-    bench.frames = options.frames.value_or(0);
-    bench.json = options.json;
-    return bench::BenchFabric(bench);
-  }
+  if (options.benchmark == "fabric") return BenchFabric(options);
   bench::SpringsBenchOptions bench;
   if (auto root = FindRoot(options.root)) {
     bench.root = *root;

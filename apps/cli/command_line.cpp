@@ -520,20 +520,23 @@ void AddVerbs(CLI::App& app, Builder& builder) {
                          "  percale bench springs\n"
                          "  percale bench springs --sizes 50 --threads 2\n"
                          "  percale bench springs --json > speed.json\n"
-                         "  percale bench fabric --sizes 32\n");
+                         "  percale bench fabric\n"
+                         "  percale bench fabric --sizes 32 -o report\n"
+                         "fabric also writes fabric.html, one page with plots.\n");
   bench.add_option("NAME", builder.options().benchmark, "Which: springs (default), fabric");
   bench.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR");
   builder.Call(
       bench, "--threads", "Threads of the many-threaded runs; default: as many as there are cores", "N", "Options",
       [&builder](const std::string& text) { builder.options().threads = Whole("--threads", text, 1, kMostThreads); });
-  builder.Call(bench, "--sizes", "Points along a side of the sheet; default 50,100,200", "N,N,...", "Options",
-               [&builder](const std::string& text) {
+  builder.Call(bench, "--sizes", "Points along a side of the sheet; default 50,100,200 (springs), 32 to 1000 (fabric)",
+               "N,N,...", "Options", [&builder](const std::string& text) {
                  for (const std::string& part : Split(text, ','))
                    builder.options().sizes.push_back(Whole("--sizes", part, 3, 2000));
                });
   builder.Call(bench, "--frames", "Frames per timed round; default: fewer for larger sheets", "N", "Options",
                [&builder](const std::string& text) { builder.options().frames = Whole("--frames", text, 1, 100000); });
   bench.add_flag("--json", builder.options().json, "One JSON object instead of tables")->group("Options");
+  builder.Folder(bench, "benchmarks");
 
   verb(Verb::Version, "Prints the version", "  percale version\n");
 }

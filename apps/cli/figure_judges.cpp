@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "apps/cli/session.h"
+#include "core/text.h"
 
 namespace percale::cli {
 

@@ -5,6 +5,7 @@
 
 #include "apps/cli/html.h"
 #include "apps/cli/session.h"
+#include "core/text.h"
 #include "render/ticks.h"
 
 namespace percale::cli {

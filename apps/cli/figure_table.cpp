@@ -5,6 +5,7 @@
 
 #include "apps/cli/figure_courses.h"
 #include "apps/cli/session.h"
+#include "core/text.h"
 
 namespace percale::cli {
 namespace {

@@ -74,13 +74,6 @@ std::string FileName(const std::string& name) {
   return file;
 }
 
-Status WriteText(const fs::path& file, const std::string& text) {
-  auto out = AtomicFile::Create(file);
-  if (!out) return out.diagnostics();
-  if (Status written = out->Write(text); !written) return written;
-  return out->Commit();
-}
-
 /// "cloth.density=50" as people read it: the parameter, and its value with the unit.
 std::pair<std::string, std::string> ParameterText(const std::string& assignment) {
   const std::string path = assignment.substr(0, assignment.find('=')), value = assignment.substr(path.size() + 1);
@@ -401,7 +394,7 @@ int Gallery::WritePage() {
   if (page.figures.size() == std::size_t(kFigureCount) && IsComplete(measured_)) page.findings = Judge(measured_);
 
   for (const auto& [name, text] : {std::pair{"figures.json", FormatPageData(page)}, {"index.html", FormatPage(page)}}) {
-    const Status status = WriteText(folder_ / name, text);
+    const Status status = WriteFile(folder_ / name, text);
     PrintDiagnostics(status.diagnostics());
     if (!status) return kFailed;
   }

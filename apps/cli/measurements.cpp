@@ -102,10 +102,7 @@ Status WriteTable(const fs::path& file, const std::string& key, const Table& tab
     for (std::size_t c = 0; c < row.size(); ++c) text += (c > 0 ? "," : "") + FormatNumber(row[c]);
   }
   text += "\n# end\n";
-  auto out = AtomicFile::Create(file);
-  if (!out) return out.diagnostics();
-  if (Status written = out->Write(text); !written) return written;
-  return out->Commit();
+  return WriteFile(file, text);
 }
 
 std::optional<Table> ReadTable(const fs::path& file, const std::string& key) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <system_error>
 
 #include "apps/cli/run.h"
 #include "core/text.h"
@@ -160,6 +161,14 @@ int CheckWritable(const fs::path& file) {
   const auto probe = AtomicFile::Create(file);
   if (probe) return kDone;
   PrintDiagnostics(probe.diagnostics());
+  return kFailed;
+}
+
+int MakeWritable(const fs::path& folder, const std::string& name) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (!code) return CheckWritable(folder / name);
+  PrintError("-o: the folder " + ShellWord(PathText(folder)) + " cannot be made: " + code.message());
   return kFailed;
 }
 

@@ -54,6 +54,8 @@ std::filesystem::path DefaultOutput(const Session& session, const char* extensio
 
 /// Fails early where a file could not be written, before minutes of simulation. Returns the exit code.
 int CheckWritable(const std::filesystem::path& file);
+/// The same of a file in the folder that is named by -o, which is made where it is missing.
+int MakeWritable(const std::filesystem::path& folder, const std::string& name);
 
 /// Runs the World as long as the options say, else `defaultFrames` frames, into a video: an mp4 file, or a folder
 /// of numbered pictures (render/video.h). Prints where it is. Returns the exit code.

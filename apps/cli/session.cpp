@@ -1,7 +1,6 @@
 #include "apps/cli/session.h"
 
 #include <algorithm>
-#include <cstdarg>
 #include <cstdio>
 #include <system_error>
 #include <vector>
@@ -299,18 +298,6 @@ std::string Megabytes(double bytes) {
   if (bytes < 1e6) return Text("%.0f kB", bytes / 1e3);
   if (bytes < 1e9) return Text("%.1f MB", bytes / 1e6);
   return Text("%.1f GB", bytes / 1e9);
-}
-
-std::string Text(const char* format, ...) {
-  va_list arguments, again;
-  va_start(arguments, format);
-  va_copy(again, arguments);
-  const int length = std::vsnprintf(nullptr, 0, format, arguments);
-  va_end(arguments);
-  std::string text(length > 0 ? std::size_t(length) : 0, '\0');
-  if (length > 0) std::vsnprintf(text.data(), text.size() + 1, format, again);
-  va_end(again);
-  return text;
 }
 
 }  // namespace percale::cli

@@ -69,11 +69,4 @@ std::string SceneArguments(const Options& options, const Session& session);
 /// Counts and sizes with separators and units a person reads at a glance: "12.5 MB".
 std::string Megabytes(double bytes);
 
-/// printf into a string.
-#if defined(__GNUC__)
-__attribute__((format(printf, 1, 2)))
-#endif
-std::string
-Text(const char* format, ...);
-
 }  // namespace percale::cli

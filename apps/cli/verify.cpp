@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 
 #include "apps/cli/pictures.h"
@@ -89,13 +88,6 @@ bool RunAll(const std::vector<Run>& runs, int threads, Progress& progress) {
   return !Interrupted() || done == runs.size();
 }
 
-Status WriteText(const fs::path& file, const std::string& text) {
-  auto out = AtomicFile::Create(file);
-  if (!out) return out.diagnostics();
-  if (Status written = out->Write(text); !written) return written;
-  return out->Commit();
-}
-
 }  // namespace
 
 int Verify(const Options& options) {
@@ -105,13 +97,7 @@ int Verify(const Options& options) {
   report.version = PERCALE_VERSION;
   const std::vector<Run> runs = Plan(options, report);
   // A folder that cannot be written shows before the work, not after it.
-  std::error_code code;
-  fs::create_directories(folder, code);
-  if (code) {
-    PrintError("-o: the folder " + ShellWord(PathText(folder)) + " cannot be made: " + code.message());
-    return kFailed;
-  }
-  if (const int writable = CheckWritable(folder / "verify.html"); writable != kDone) return writable;
+  if (const int writable = MakeWritable(folder, "verify.html"); writable != kDone) return writable;
   const int threads = options.threads > 0 ? options.threads : int(std::max(1u, std::thread::hardware_concurrency()));
   bool all = false;
   {
@@ -127,7 +113,7 @@ int Verify(const Options& options) {
              });
     });
   }
-  const Status status = WriteText(folder / "verify.html", FormatPage(report));
+  const Status status = WriteFile(folder / "verify.html", FormatPage(report));
   if (options.json) {
     std::fputs(FormatJson(report).c_str(), stdout);
   } else {

@@ -30,12 +30,9 @@ Result<std::filesystem::path> ExportFrames(std::span<const FrameRow> rows, const
   std::filesystem::path stem = sceneFile.stem();
   stem += "-plots";
   const std::filesystem::path file = NumberedName(stem, ".csv");
-  Result<AtomicFile> table = AtomicFile::Create(file);
-  if (!table) return table.diagnostics();
   std::string text = ReportTableHeader();
   for (const FrameRow& row : rows) text += ReportTableRow(row.report, row.stretch99);
-  if (const Status written = table->Write(text); !written) return written.diagnostics();
-  if (const Status committed = table->Commit(); !committed) return committed.diagnostics();
+  if (const Status written = WriteFile(file, text); !written) return written.diagnostics();
   return file;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "apps/viewer/session.h"
 #include "apps/viewer/ui_state.h"
 #include "apps/viewer/widgets.h"
+#include "core/text.h"
 #include "mesh/cloth_model.h"
 #include "mesh/pick.h"
 #include "world/measure.h"
@@ -23,13 +23,6 @@ constexpr ImU32 kRingColor = IM_COL32(230, 159, 0, 255);  // orange of Okabe and
 
 std::size_t Index(int i) {
   return static_cast<std::size_t>(i);
-}
-
-template <class... Arguments>
-std::string Text(const char* format, Arguments... arguments) {
-  char text[120];
-  std::snprintf(text, sizeof text, format, arguments...);
-  return text;
 }
 
 /// The cloths' vertex nearest to where the pointer's ray meets them first.

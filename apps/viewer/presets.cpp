@@ -63,10 +63,7 @@ bool SavePreset(const std::string& name, const fs::path& folder, Session& sessio
       name.empty() ? NumberedName(folder / session.sceneFile().stem(), ".json") : folder / TextPath(name + ".json");
   if (fs::exists(path, error))
     return refuse({MakeError(PathText(path), "there is a preset of this name; choose another, or delete the file")});
-  Result<AtomicFile> created = AtomicFile::Create(path);
-  if (!created) return refuse(created.diagnostics());
-  if (const Status written = created->Write(text); !written) return refuse(written.diagnostics());
-  if (const Status committed = created->Commit(); !committed) return refuse(committed.diagnostics());
+  if (const Status written = WriteFile(path, text); !written) return refuse(written.diagnostics());
   session.log().Write(LogLine("preset_saved").Text("file", PathText(path)));
   session.messages().Set(kSource, {MakeNote("preset " + PathText(path.stem()) + " saved as " + PathText(path) + ": " +
                                             std::to_string(saved->values.size()) + " values")});

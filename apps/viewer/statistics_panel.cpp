@@ -1,30 +1,12 @@
 #include <imgui.h>
 
-#include <cstdarg>
-#include <cstdio>
 #include <string>
 
 #include "apps/viewer/panels.h"
 #include "apps/viewer/widgets.h"
+#include "core/text.h"
 
 namespace percale::viewer {
-namespace {
-
-#if defined(__GNUC__)
-__attribute__((format(printf, 1, 2)))
-#endif
-std::string
-Text(const char* format, ...) {
-  char text[120];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
-}  // namespace
-
 void DrawStatisticsPanel(Session& session, UiState& state) {
   const Snapshot& snapshot = session.snapshot();
   const StepReport& report = snapshot.report;

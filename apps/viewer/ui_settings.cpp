@@ -144,10 +144,7 @@ Status SaveUiSettings(const std::filesystem::path& file, const UiSettings& setti
 
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);  // What fails here fails below, with its place.
-  Result<AtomicFile> created = AtomicFile::Create(file);
-  if (!created) return created.diagnostics();
-  if (Status written = created->Write(json); !written) return written;
-  return created->Commit();
+  return WriteFile(file, json);
 }
 
 }  // namespace percale::viewer

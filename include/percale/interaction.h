@@ -1,10 +1,12 @@
 #pragma once
 /// \file
-/// What a hand does to a running World, apart from its settings: hold the cloth, throw balls at it,
-/// blow at it.
+/// What a hand or a program does to a running World, apart from its settings: hold the cloth, throw balls at it,
+/// blow at it, pull at it with forces of its own.
 
 #include <cstddef>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "percale/vec3.h"
@@ -32,6 +34,20 @@ struct Ball {
   double mass = 1;      ///< [kg], > 0.
   friend bool operator==(const Ball&, const Ball&) = default;
 };
+
+/// One cloth at the start of a step, for forces of the program's own.
+struct ForceCall {
+  int cloth = 0;
+  double time = 0;                   ///< Since the start [s].
+  std::span<const Vec3> positions;   ///< [m], one per vertex.
+  std::span<const Vec3> velocities;  ///< [m/s], one per vertex.
+  std::span<Vec3> forces;            ///< Where they go [N], one per vertex; zero before the call.
+};
+/// Is called for each cloth in each step, on the thread that calls World::Step; must not throw.
+using ForceFunction = std::function<void(const ForceCall&)>;
+/// The greatest length of a force [N]. One that is greater, or not a number, ends the simulation as a divergence that
+/// names the vertex.
+inline constexpr double kMostForce = 1e9;
 
 /// A World keeps no more balls; the oldest makes room.
 inline constexpr std::size_t kMostBalls = 16;

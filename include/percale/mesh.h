@@ -15,4 +15,11 @@ struct Edge {
   friend bool operator==(const Edge&, const Edge&) = default;
 };
 
+/// What the edge between two triangles remembers of having been folded.
+struct Fold {
+  double rest = 0;   ///< Angle that it bends back to [rad]; 0: flat.
+  double moved = 0;  ///< By how much that has moved, in all [rad].
+  friend bool operator==(const Fold&, const Fold&) = default;
+};
+
 }  // namespace percale

@@ -83,9 +83,11 @@ struct ClothSettings {
   double bendWeft = 1.2e-5;        ///< The same along the weft [N m], >= 0.
   double stretchDamping = 0.002;   ///< Of strain rates, as a time: stress = stiffness (strain + this * rate) [s], >= 0.
   double bendDamping = 0.002;      ///< The same for curvature [s], >= 0.
-  double strainLimit = 0.2;        ///< Strain from which the yarns lock: the stress grows with its square, > 0.
-  double warpAngle = 0;            ///< Of the warp, turned from u towards v [degree].
-  double pressure = 0;             ///< Inside of a closed cloth above the outside [Pa].
+  double foldYield = 0;      ///< BendingLaw::Hinges: curvature beyond which a fold sets [1/m], >= 0; 0: none does.
+  double foldHardening = 0;  ///< Growth of the angle that a fold bears by the angle that has set, >= 0.
+  double strainLimit = 0.2;  ///< Strain from which the yarns lock: the stress grows with its square, > 0.
+  double warpAngle = 0;      ///< Of the warp, turned from u towards v [degree].
+  double pressure = 0;       ///< Inside of a closed cloth above the outside [Pa].
   MembraneLaw membraneLaw = MembraneLaw::StVenantKirchhoff;
   BendingLaw bendingLaw = BendingLaw::Quadratic;
   RestAngles restAngles = RestAngles::Flat;
@@ -115,6 +117,15 @@ struct Patch {
   double stretch = 1;                ///< Times stretchWarp, stretchWeft and shear, > 0.
   double bend = 1;                   ///< Times bendWarp and bendWeft, >= 0.
   double density = 1;                ///< Times the density, > 0.
+};
+
+/// Ropes from points of one cloth to a place: slack up to their length, springs beyond it. Engine::Fabric.
+struct Tether {
+  int cloth = 0;                  ///< Index of the cloth in the scene.
+  std::vector<GridPoint> points;  ///< Each on a rope of its own; at least one.
+  Vec3 anchor;                    ///< [m]
+  double length = 0;              ///< [m], >= 0.
+  double stiffness = 1e4;         ///< Force per way beyond the length [N/m], > 0.
 };
 
 /// Carries some pins of one cloth along a straight line: at rest before `start`, displaced by
@@ -178,6 +189,7 @@ struct Scene {
   std::vector<SphereSettings> spheres;
   std::vector<PlaneSettings> planes;
   std::vector<Patch> patches;
+  std::vector<Tether> tethers;
   std::vector<PinMotion> pinMotions;
   WindSettings wind;
   CameraSettings camera;

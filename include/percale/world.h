@@ -103,6 +103,7 @@ struct WorldState {
     std::vector<Vec3> positions;  ///< [m], one per vertex.
     std::vector<Vec3> previous;   ///< One step before [m].
     std::vector<Vec3> anchors;    ///< Where each pin is held, apart from its motions [m]; in the order of pinned().
+    std::vector<Fold> folds;  ///< Engine::Fabric, where folds set: one per edge of two triangles, ascending; else none.
   };
   std::shared_ptr<const Scene> scene;  ///< The settings of that moment.
   StepReport report;
@@ -146,6 +147,9 @@ class World {
   void AddBall(const Ball& ball);
   /// One more gust, from its start on. Check must find nothing.
   void AddGust(const Gust& gust);
+  /// Forces that act in each step from now on, constant over the step, beside all others; none: an empty function.
+  /// They are no part of the state: Reset, Apply and Restore leave them, Save does not keep them.
+  void SetForces(ForceFunction forces);
   std::span<const Handle> handles() const;
   std::span<const Ball> balls() const;  ///< Those more than 100 m away are gone.
 

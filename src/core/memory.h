@@ -10,4 +10,7 @@ namespace percale {
 /// (Linux). 0 where the system does not say.
 std::uint64_t AvailableMemory();
 
+/// The most bytes that this process has had in memory at once. 0 where the system does not say (Windows).
+std::uint64_t PeakMemory();
+
 }  // namespace percale

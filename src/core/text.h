@@ -37,4 +37,11 @@ std::string_view Nearest(std::string_view word, std::span<const std::string_view
 /// " (did you mean `NEAREST`?)", or nothing where no word is near.
 std::string DidYouMean(std::string_view word, std::span<const std::string_view> known);
 
+/// printf into a string.
+#if defined(__GNUC__)
+__attribute__((format(printf, 1, 2)))
+#endif
+std::string
+Text(const char* format, ...);
+
 }  // namespace percale

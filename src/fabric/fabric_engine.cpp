@@ -46,6 +46,26 @@ void FabricEngine::SetUp() {
   h_ = scene_.TimeStep();
   UpdatePins();
   solver_.SetUp(h_, free_);
+  StartFolds();
+}
+
+/// Folds that have not set follow the model, those that have stay.
+void FabricEngine::StartFolds() {
+  if (folds_.empty() && !model_.yield.empty()) folds_.resize(model_.hinges.size());
+  for (std::size_t h = 0; h < folds_.size(); ++h) {
+    if (folds_[h].moved == 0) folds_[h].rest = model_.hinges[h].restAngle;
+  }
+  solver_.objective().SetFolds(folds_);
+}
+
+/// What the step that has ended leaves in the folds.
+void FabricEngine::SetFolds() {
+  if (model_.yield.empty()) return;
+  ForRange(executor_, folds_.size(), [&](int h) {
+    const std::int32_t* v = model_.hinges[Index(h)].vertex;
+    const auto x = [&](int k) { return From<double>(position_[Index(v[k])]); };
+    folds_[Index(h)] = YieldedRestAngle(HingeAngle(x(0), x(1), x(2), x(3)), folds_[Index(h)], model_.yield[Index(h)]);
+  });
 }
 
 void FabricEngine::UpdatePins() {
@@ -59,6 +79,8 @@ void FabricEngine::Reset() {
   position_ = previous_ = predicted_ = model_.start;
   pins_.Reset([&](int v) { return model_.start[Index(v)]; });
   time_ = 0;
+  folds_.clear();
+  StartFolds();
 }
 
 void FabricEngine::MoveColliders(double time) {
@@ -116,6 +138,11 @@ void FabricEngine::Blow(double time, std::span<const Gust> gusts) {
   });
 }
 
+void FabricEngine::AddForces(int cloth, std::span<const Vec3> forces) {
+  const std::size_t first = Index(model_.firstVertex[Index(cloth)]);
+  for (std::size_t v = 0; v < forces.size(); ++v) loads_[first + v].force += forces[v];
+}
+
 /// Springs from the vertices around a grip to where it draws them, critically damped.
 void FabricEngine::Hold(std::span<const Handle> handles) {
   for (const Handle& handle : handles) {
@@ -166,6 +193,7 @@ void FabricEngine::Solve() {
   counts_.converged = counts_.converged && result.converged;
   std::swap(previous_, position_);
   std::swap(position_, next_);
+  SetFolds();
 }
 
 void FabricEngine::CollideBall(Ball& ball) {
@@ -221,6 +249,26 @@ void FabricEngine::WriteState(int cloth, std::span<const Vec3> positions, std::s
   std::copy(positions.begin(), positions.end(), predicted_.begin() + first);
   pins_.WriteAnchors(Index(cloth), anchors, [&](int v) { return position_[Index(v)]; });
   time_ = time;
+}
+
+void FabricEngine::ReadFolds(int cloth, std::vector<Fold>& folds) const {
+  folds.clear();
+  if (folds_.empty()) return;
+  for (int h = model_.firstHinge[Index(cloth)]; h < model_.firstHinge[Index(cloth) + 1]; ++h) {
+    folds.push_back({folds_[Index(h)].rest, folds_[Index(h)].moved});
+  }
+}
+
+void FabricEngine::WriteFolds(int cloth, std::span<const Fold> folds) {
+  const std::size_t first = Index(model_.firstHinge[Index(cloth)]);
+  const std::size_t count = Index(model_.firstHinge[Index(cloth) + 1]) - first;
+  const bool given = folds.size() == count;
+  if (given && folds_.empty()) folds_.resize(model_.hinges.size());
+  if (folds_.empty()) return;
+  for (std::size_t h = 0; h < count; ++h) {
+    folds_[first + h] = given ? SetFold<double>{folds[h].rest, folds[h].moved} : SetFold<double>{};
+  }
+  StartFolds();
 }
 
 VertexRef FabricEngine::RefOf(int vertex) const {

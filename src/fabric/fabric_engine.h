@@ -15,6 +15,7 @@
 #include "mesh/engine_types.h"
 #include "mesh/pins.h"
 #include "percale/interaction.h"
+#include "percale/mesh.h"
 #include "percale/scene.h"
 
 namespace percale::fabric {
@@ -34,6 +35,8 @@ class FabricEngine {
   void MoveColliders(double time);
   /// Where inertia alone would lead, and what air and handles do. Returns false when a coordinate is out of bounds.
   bool ApplyForces(double time, std::span<const Gust> gusts, std::span<const Handle> handles);
+  /// More forces on the vertices of a cloth [N], in this step. After ApplyForces.
+  void AddForces(int cloth, std::span<const Vec3> forces);
   /// Where all forces balance.
   void Solve();
   /// Pushes cloth and ball apart by their masses, momentum kept.
@@ -47,11 +50,15 @@ class FabricEngine {
 
   /// Copies a cloth's positions and those of one step ago [m]. Spans of the cloth's vertex count.
   void ReadState(int cloth, std::span<Vec3> positions, std::span<Vec3> previous) const;
+  /// The folds of a cloth that may set, by hinge; none where none may.
+  void ReadFolds(int cloth, std::vector<Fold>& folds) const;
   /// Where the pins of a cloth are held apart from their motions [m], by vertex.
   void ReadAnchors(int cloth, std::vector<Vec3>& anchors) const;
   /// Puts a cloth into the state that it has at `time` [s].
   void WriteState(int cloth, std::span<const Vec3> positions, std::span<const Vec3> previous,
                   std::span<const Vec3> anchors, double time);
+  /// The folds of a cloth, by hinge; none, or another number of them: all as they were made.
+  void WriteFolds(int cloth, std::span<const Fold> folds);
   /// The greatest stretch of a triangle: the larger singular value of its deformation gradient.
   Stretch GreatestStretch() const;
   double ElasticEnergy();                           ///< [J]
@@ -62,6 +69,8 @@ class FabricEngine {
  private:
   void SetUp();
   void UpdatePins();
+  void StartFolds();
+  void SetFolds();
   void Hold(std::span<const Handle> handles);
   void Blow(double time, std::span<const Gust> gusts);
   VertexRef RefOf(int vertex) const;
@@ -77,8 +86,9 @@ class FabricEngine {
   std::vector<Vec3> position_, previous_;
   std::vector<Vec3> predicted_, next_;
   std::vector<VertexLoad> loads_;
-  std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
-  std::vector<std::int32_t> touched_;  // of CollideBall
+  std::vector<VertexLoad> windLoads_;   // per triangle, of each of its corners; none without wind
+  std::vector<std::int32_t> touched_;   // of CollideBall
+  std::vector<SetFold<double>> folds_;  // per hinge; none where none may set
   EngineCounts counts_;
 };
 

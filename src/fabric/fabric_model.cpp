@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -43,6 +44,10 @@ void Append(const RestMesh& mesh, double warpAngle, FabricModel& model) {
   model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
   const auto cloth = static_cast<std::int32_t>(model.firstVertex.size() - 1);
   model.vertexCount += static_cast<int>(mesh.positions.size());
+  const std::size_t triangles = model.triangles.size() + mesh.triangles.size();
+  model.triangles.reserve(triangles);
+  model.clothOf.reserve(triangles);
+  model.material.reserve(3 * triangles);
   model.start.insert(model.start.end(), mesh.positions.begin(), mesh.positions.end());
   for (const Triangle& t : mesh.triangles) {
     model.triangles.push_back({t.a + first, t.b + first, t.c + first});
@@ -64,6 +69,11 @@ void FindHinges(const Topology& topology, FabricModel& model) {
     hinge.vertex[2] = topology.edgeOpposite[e][0], hinge.vertex[3] = topology.edgeOpposite[e][1];
     hinge.triangle[0] = t0, hinge.triangle[1] = t1;
     model.hinges.push_back(hinge);
+  }
+  for (const int first : model.firstVertex) {
+    const auto at = std::lower_bound(model.hinges.begin(), model.hinges.end(), first,
+                                     [](const FabricHinge& hinge, int v) { return hinge.vertex[0] < v; });
+    model.firstHinge.push_back(static_cast<int>(at - model.hinges.begin()));
   }
   model.hingeOf.resize(model.triangles.size());
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
@@ -159,6 +169,7 @@ void FindChart(FabricModel& model) {
     std::size_t corner;
   };
   std::vector<Corner> order;
+  order.reserve(model.material.size());
   for (std::size_t k = 0; k < model.material.size(); ++k) {
     const Triangle& t = model.triangles[k / 3];
     order.push_back({k % 3 == 0 ? t.a : k % 3 == 1 ? t.b : t.c, model.material[k], k});
@@ -227,6 +238,26 @@ std::vector<Factors> FindFactors(const Scene& scene, const FabricModel& model) {
   return factors;
 }
 
+/// Angles at which folds set: a yield curvature over the width that a hinge stands for, (A1 + A2) / |e|.
+std::vector<FoldYield<double>> FindYield(const Scene& scene, const FabricModel& model) {
+  std::vector<FoldYield<double>> yield;
+  const auto sets = [](const ClothSettings& c) { return c.foldYield > 0 && c.bendingLaw == BendingLaw::Hinges; };
+  if (std::none_of(scene.cloths.begin(), scene.cloths.end(), sets)) return yield;
+  yield.assign(model.hinges.size(), {.angle = std::numeric_limits<double>::infinity()});
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const ClothSettings& cloth = scene.cloths[c];
+    for (int h = model.firstHinge[c]; sets(cloth) && h < model.firstHinge[c + 1]; ++h) {
+      const FabricHinge& hinge = model.hinges[Index(h)];
+      const MaterialPoint from = CornerAt(model, hinge.triangle[0], hinge.vertex[0]),
+                          to = CornerAt(model, hinge.triangle[0], hinge.vertex[1]);
+      const double area = model.rest[Index(hinge.triangle[0])].area + model.rest[Index(hinge.triangle[1])].area;
+      const double length = std::hypot(to.u - from.u, to.v - from.v);
+      yield[Index(h)] = {.angle = cloth.foldYield * area / length, .hardening = cloth.foldHardening};
+    }
+  }
+  return yield;
+}
+
 }  // namespace
 
 FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes) {
@@ -279,12 +310,22 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   }
   const std::vector<Factors> factors = FindFactors(scene, model);
   model.strength.clear();
+  model.strength.reserve(factors.size());
   for (const Factors& factor : factors) model.strength.push_back(factor.stretch);
   for (FabricHinge& hinge : model.hinges) {
     const auto x = [&](int k) { return From<double>(model.start[Index(hinge.vertex[k])]); };
     const auto cloth = std::upper_bound(model.firstVertex.begin(), model.firstVertex.end(), hinge.vertex[0]) - 1;
     const bool flat = scene.cloths[Index(cloth - model.firstVertex.begin())].restAngles == RestAngles::Flat;
     hinge.restAngle = flat ? 0 : HingeAngle(x(0), x(1), x(2), x(3));
+  }
+  model.yield = FindYield(scene, model);
+  model.tethers.clear();
+  for (const Tether& tether : scene.tethers) {
+    const auto c = Index(tether.cloth);
+    for (const GridPoint& point : tether.points) {
+      if (const auto vertex = VertexOf(scene.cloths[c], point))
+        model.tethers.push_back({model.firstVertex[c] + *vertex, tether.anchor, tether.length, tether.stiffness});
+    }
   }
 
   model.mass.assign(Index(model.vertexCount), 0);

@@ -24,6 +24,14 @@ struct FabricHinge {
   HingeWeights<double> weights;  ///< Of the vertices in the jump of slope across the edge [1/m].
 };
 
+/// A rope from a vertex to a place.
+struct FabricTether {
+  std::int32_t vertex = 0;
+  Vec3 anchor;           ///< [m]
+  double length = 0;     ///< [m]
+  double stiffness = 0;  ///< [N/m]
+};
+
 /// The membrane of one cloth.
 struct Membrane {
   MembraneLaw kind = MembraneLaw::StVenantKirchhoff;
@@ -65,6 +73,7 @@ struct FabricModel {
   std::vector<std::int32_t> clothOf;       ///< Per triangle.
   std::vector<RestTriangle<double>> rest;  ///< Per triangle.
   std::vector<FabricHinge> hinges;
+  std::vector<int> firstHinge;                       ///< Per cloth, and the end.
   std::vector<std::array<std::int32_t, 3>> hingeOf;  ///< Per triangle those opposite of its corners; -1 at a border.
   Lists corners;                                     ///< Per vertex its corners: 3 * triangle + 0, 1, 2, ascending.
   Lists hingeEnds;                                   ///< Per vertex its places in hinges: 4 * hinge + 0..3, ascending.
@@ -82,7 +91,9 @@ struct FabricModel {
                                                ///< with an entry on the diagonal [N/m].
   std::vector<double> buckling;                ///< Per triangle: a plate's buckling stress on its own inertia over a
                                                ///< step, times the step, 2 sqrt(D rho), over `strength` [N s/m].
-  bool anyHinges = false;                      ///< Whether any cloth bends by BendingLaw::Hinges.
+  std::vector<FabricTether> tethers;
+  std::vector<FoldYield<double>> yield;  ///< Per hinge; none where no cloth's folds set.
+  bool anyHinges = false;                ///< Whether any cloth bends by BendingLaw::Hinges.
 
   int Cloths() const { return static_cast<int>(firstVertex.size()) - 1; }
 };

@@ -185,6 +185,9 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
       }
     }
 
+    for (std::vector<Slot>* slots : {&level.productSlot, &level.slot, &level.skip}) slots->shrink_to_fit();
+    level.mirror.shrink_to_fit();
+
     level.right.assign(VectorLength(P.nodes), 0);
     level.solution.assign(VectorLength(P.nodes), 0);
     level.scratch.assign(VectorLength(P.nodes), 0);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fabric/energy/air.h"
+#include "fabric/energy/attachment.h"
 
 namespace percale::fabric {
 namespace {
@@ -118,7 +119,14 @@ double Objective::Energy(std::span<const Vec3> y) {
     }
     energy -= model_.pressure[Index(c)] * volume;
   }
+  for (const FabricTether& tether : model_.tethers) energy += Pull(tether, y).energy;
   return energy;
+}
+
+/// What a rope costs and does to its vertex; nothing where that is a pin.
+PointEnergy<double> Objective::Pull(const FabricTether& tether, std::span<const Vec3> y) const {
+  if (!step_.free[Index(tether.vertex)]) return {};
+  return TetherEnergy(tether.stiffness, From<double>(tether.anchor), tether.length, At(y, tether.vertex));
 }
 
 double Objective::ElasticEnergy(std::span<const Vec3> y) {
@@ -214,7 +222,7 @@ BendingMoments<double> Objective::Bend(int t) const {
     const std::int32_t h = model_.hingeOf[Index(t)][k];
     if (h < 0) continue;
     angle.edge[k] = angle_[Index(h)];
-    rest.edge[k] = model_.hinges[Index(h)].restAngle;
+    rest.edge[k] = folds_.empty() ? model_.hinges[Index(h)].restAngle : folds_[Index(h)].rest;
     damping.start.edge[k] = startAngle_[Index(h)];
   }
   return Moments(model_.bending[Index(t)], angle, rest, damping);
@@ -265,6 +273,11 @@ void Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> grad
       for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
     }
   });
+  for (const FabricTether& tether : model_.tethers) {
+    const Matrix3<double> stiffness = Pull(tether, y).hessian;
+    Real* block = matrix.DiagonalBlock(tether.vertex);
+    for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
+  }
   matrix.Finish(executor_);
 }
 
@@ -304,6 +317,7 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient) {
     }
     gradient[Index(v)] = sum;
   });
+  for (const FabricTether& tether : model_.tethers) gradient[Index(tether.vertex)] += ToVec3(Pull(tether, y).gradient);
 }
 
 }  // namespace percale::fabric

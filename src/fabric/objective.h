@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/executor.h"
+#include "fabric/energy/point_energy.h"
 #include "fabric/fabric_model.h"
 #include "fabric/kernels.h"
 #include "fabric/system_matrix.h"
@@ -35,6 +36,9 @@ class Objective {
   /// Follows changes of the model's materials. Allocates, as the other functions do not.
   void TakeMaterials();
 
+  /// Rest angles other than the model's, per hinge; none: the model's. The span must stay.
+  void SetFolds(std::span<const SetFold<double>> folds) { folds_ = folds; }
+
   /// Takes over the settings of a step; their spans must stay.
   void Begin(const StepSettings& step);
 
@@ -58,6 +62,7 @@ class Objective {
   double MembraneEnergy(std::span<const Vec3> y);
   double BendingEnergy(std::span<const Vec3> y);
   BendingMoments<double> Bend(int triangle) const;
+  PointEnergy<double> Pull(const FabricTether& tether, std::span<const Vec3> y) const;
   double PlateEnergy(std::span<const Vec3> y);
   void FindParts();
   MembraneArgs Arguments(std::span<const Vec3> y, int batch);
@@ -73,6 +78,7 @@ class Objective {
   const Executor& executor_;
   const Kernels& kernels_;
   StepSettings step_;
+  std::span<const SetFold<double>> folds_;
   Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:

@@ -8,6 +8,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include "fabric/energy/attachment.h"
+
 namespace percale::fabric {
 namespace {
 
@@ -145,6 +147,15 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
         }
       }
     }
+  }
+
+  for (const FabricTether& tether : model_.tethers) {
+    if (!step_.free[Index(tether.vertex)]) continue;
+    const PointEnergy<double> pull =
+        TetherEnergy(tether.stiffness, From<double>(tether.anchor), tether.length, At(y, tether.vertex));
+    sum += pull.energy;
+    addGradient(tether.vertex, pull.gradient);
+    block(tether.vertex, tether.vertex, pull.hessian);
   }
 
   const ScalarMatrix& q = model_.plates;

@@ -143,6 +143,9 @@ void SystemMatrix::SetUp(BlockPattern pattern, const ScalarMatrix& constant, std
     }
     restFirst_.push_back(static_cast<std::int32_t>(restColumn_.size()));
   }
+  cleared_.shrink_to_fit();
+  restColumn_.shrink_to_fit();
+  restValue_.shrink_to_fit();
   extra_.begin.assign(n, 0);
   extra_.end.assign(n, 0);
   extra_.any = false;

@@ -400,6 +400,15 @@ void SpringsEngine::Pull(const Handle& handle) {
   MovePatch(handle, ((handle.target - x) * (w * w) + (before - x) * (2 * w)) / (1 + w * w + 2 * w), false);
 }
 
+void SpringsEngine::AddForces(int cloth, std::span<const Vec3> forces) {
+  const Sheet& sheet = sheets_[Index(cloth)];
+  if (sheet.mass <= 0) return;
+  for (std::size_t v = 0; v < forces.size(); ++v) {
+    const int p = sheet.firstPoint + static_cast<int>(v);
+    if (!fixed_[Index(p)]) Shift(p, forces[v] * (dt_ * dt_ / sheet.mass), false);
+  }
+}
+
 void SpringsEngine::Place(const Handle& handle) {
   const int centre = sheets_[Index(handle.cloth)].firstPoint + handle.vertex;
   MovePatch(handle, handle.target - Get(positions_, centre), true);

@@ -69,6 +69,8 @@ class SpringsEngine {
   bool ApplyForces(double time, std::span<const Gust> gusts = {});
   /// Draws a vertex and the cloth around it to the handle's target; a pin is carried there alone.
   void Pull(const Handle& handle);
+  /// Forces on the vertices of a cloth [N], in this step. After ApplyForces.
+  void AddForces(int cloth, std::span<const Vec3> forces);
   void FindContacts();
   void SelfCollide();
   void Collide();

@@ -6,6 +6,8 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "mesh/cloth_model.h"
+#include "mesh/pins.h"
+#include "mesh/rest_mesh.h"
 #include "percale/parameters.h"
 #include "world/limits.h"
 
@@ -25,6 +27,8 @@ constexpr double kSmallestSpacing = 1e-9;
 constexpr double kShortestNormal = 1e-9;
 constexpr int kMostStepsPerFrame = 100000;
 constexpr std::size_t kLongestShaderName = 100;
+/// Of more pins not all pairs are compared.
+constexpr std::size_t kMostComparedPins = 500;
 /// Of a list of a million wrong pins nobody reads more.
 constexpr std::size_t kMostMessages = 10000;
 
@@ -42,10 +46,14 @@ class Checker {
     CheckSize();
     for (std::size_t c = 0; c < scene_.cloths.size(); ++c) CheckCloth(c);
     for (std::size_t p = 0; p < scene_.patches.size(); ++p) CheckPatch(p);
+    for (std::size_t t = 0; t < scene_.tethers.size(); ++t) CheckTether(t);
     for (std::size_t p = 0; p < scene_.planes.size(); ++p) CheckPlane(p);
     for (std::size_t m = 0; m < scene_.pinMotions.size(); ++m) CheckMotion(m);
     CheckShader();
-    if (scene_.simulation.engine == Engine::Fabric) WarnOfColliders();
+    if (scene_.simulation.engine == Engine::Fabric) {
+      WarnOfColliders();
+      if (!hasErrors_ && !scene_.pinMotions.empty()) WarnOfPinsApart();
+    }
     return std::move(diagnostics_);
   }
 
@@ -245,6 +253,9 @@ class Checker {
     if (cloth.restAngles == RestAngles::Start && cloth.bendingLaw == BendingLaw::Quadratic) {
       Warn(Path(c, "rest_angles"), "bending_law quadratic bends back to flat; set it to \"hinges\"");
     }
+    if (cloth.foldYield > 0 && cloth.bendingLaw == BendingLaw::Quadratic) {
+      Warn(Path(c, "fold_yield"), "no fold sets with bending_law quadratic; set it to \"hinges\"");
+    }
     if (cloth.membraneLaw == MembraneLaw::NeoHookean && cloth.stretchWarp != cloth.stretchWeft) {
       Warn(Path(c, "membrane_law"),
            "neo_hookean has one stiffness for all directions, the mean of stretch_warp and stretch_weft");
@@ -325,6 +336,21 @@ class Checker {
           "expected a direction, such as [0, 1, 0] for a floor, got " + FormatValue(normal) + ", which has none");
   }
 
+  void CheckTether(std::size_t t) {
+    const Tether& tether = scene_.tethers[t];
+    const std::string path = "/tether/" + std::to_string(t);
+    if (!CheckClothIndex(path, tether.cloth)) return;
+    if (scene_.simulation.engine != Engine::Fabric) Warn(path, "only the engine \"fabric\" heeds this");
+    const ClothSettings& cloth = scene_.cloths[static_cast<std::size_t>(tether.cloth)];
+    if (tether.points.empty()) Error(path + "/points", "expected at least one point");
+    if (cloth.shape == Shape::Mesh && !cloth.loaded) return;
+    for (std::size_t k = 0; k < tether.points.size(); ++k) {
+      if (VertexOf(cloth, tether.points[k])) continue;
+      Error(path + "/points/" + std::to_string(k),
+            "expected " + Points(cloth) + ", got " + Text(cloth, tether.points[k]));
+    }
+  }
+
   void CheckMotion(std::size_t m) {
     const PinMotion& motion = scene_.pinMotions[m];
     const std::string path = "/pin_motion/" + std::to_string(m);
@@ -352,6 +378,46 @@ class Checker {
     for (const std::size_t k : Repeated(motion.points)) {
       Warn(path + "/points/" + std::to_string(k),
            Text(cloth, motion.points[k]) + " is moved already; the second mention does nothing");
+    }
+  }
+
+  /// Pins that are carried farther apart than the cloth between them is long, of cloths that are flat at the start.
+  void WarnOfPinsApart() {
+    for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
+      const ClothSettings& cloth = scene_.cloths[c];
+      std::vector<std::int32_t> vertices = PinnedVertices(cloth);
+      if (cloth.shape == Shape::Mesh || vertices.size() < 2 || vertices.size() > kMostComparedPins) continue;
+      Scene alone;
+      alone.cloths = {cloth};
+      std::vector<double> times;
+      for (const PinMotion& motion : scene_.pinMotions) {
+        if (static_cast<std::size_t>(motion.cloth) != c) continue;
+        alone.pinMotions.push_back(motion);
+        alone.pinMotions.back().cloth = 0;
+        times.push_back(motion.end);
+      }
+      if (times.empty()) continue;
+      const std::vector<Vec3> start = MakeClothMesh(cloth).positions;
+      Pins pins;
+      pins.Update(alone, std::vector<int>{0}, 0, [&](int v) { return start[static_cast<std::size_t>(v)]; });
+      double worst = 1 + cloth.strainLimit;
+      std::string message;
+      for (const double time : times) {
+        pins.MoveTo(time);
+        for (const Pin& a : pins.All()) {
+          for (const Pin& b : pins.All().first(static_cast<std::size_t>(&a - pins.All().data()))) {
+            const double apart = Length(a.target - b.target), cloth0 = Length(a.anchor - b.anchor);
+            if (!(apart > worst * cloth0)) continue;
+            worst = apart / cloth0;
+            message = "pins " + Text(cloth, PointOf(cloth, b.point)) + " and " + Text(cloth, PointOf(cloth, a.point)) +
+                      " are carried " + FormatNumber(RoundDown(apart, 3)) + " m apart at " + FormatNumber(time) +
+                      " s, with " + FormatNumber(RoundDown(cloth0, 3)) +
+                      " m of cloth between them: more than its strain_limit of " + FormatNumber(cloth.strainLimit) +
+                      " lets it stretch";
+          }
+        }
+      }
+      if (!message.empty()) Warn("/pin_motion", message);
     }
   }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/text.h"
+#include "percale/interaction.h"
 #include "world/limits.h"
 
 namespace percale {
@@ -41,6 +42,14 @@ Divergence ExplainDivergence(const Scene& scene, std::int64_t step, int cloth, i
         "simulation.steps_per_frame";
   }
   return d;
+}
+
+Divergence ExplainForce(std::int64_t step, int cloth, int vertex, const Vec3& force) {
+  return {step, cloth, vertex,
+          "the force function gave (" + FormatNumber(force.x) + ", " + FormatNumber(force.y) + ", " +
+              FormatNumber(force.z) + ") N; expected finite numbers, together at most " + FormatNumber(kMostForce) +
+              " N",
+          "mend the function that was given to World::SetForces, then go on from Reset or Restore"};
 }
 
 }  // namespace percale

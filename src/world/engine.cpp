@@ -25,6 +25,7 @@ constexpr EngineTable CommonTable() {
   table.configure = [](void* e, const Scene& scene) { Self<E>(e).Configure(scene); };
   table.reset = [](void* e) { Self<E>(e).Reset(); };
   table.moveColliders = [](void* e, double time) { Self<E>(e).MoveColliders(time); };
+  table.addForces = [](void* e, int cloth, std::span<const Vec3> forces) { Self<E>(e).AddForces(cloth, forces); };
   table.collideBall = [](void* e, Ball& ball) { Self<E>(e).CollideBall(ball); };
   table.place = [](void* e, const Handle& handle) { Self<E>(e).Place(handle); };
   table.readState = [](const void* e, int cloth, std::span<Vec3> positions, std::span<Vec3> previous) {
@@ -76,6 +77,13 @@ constexpr EngineTable FabricTable() {
     return Self<FabricEngine>(e).ApplyForces(time, gusts, handles);
   };
   table.solve = [](void* e) { Self<FabricEngine>(e).Solve(); };
+  table.readFolds = [](const void* e, int cloth, std::vector<Fold>& folds) {
+    Self<FabricEngine>(e).ReadFolds(cloth, folds);
+  };
+  table.writeState = [](void* e, int cloth, const WorldState::Cloth& state, double time) {
+    Self<FabricEngine>(e).WriteState(cloth, state.positions, state.previous, state.anchors, time);
+    Self<FabricEngine>(e).WriteFolds(cloth, state.folds);
+  };
   return table;
 }
 

@@ -26,6 +26,8 @@ struct EngineTable {
   void (*moveColliders)(void*, double time) = nullptr;
   /// False: a coordinate went out of bounds.
   bool (*applyForces)(void*, double time, std::span<const Gust>, std::span<const Handle>) = nullptr;
+  /// More forces [N] on the vertices of a cloth in this step. After applyForces.
+  void (*addForces)(void*, int cloth, std::span<const Vec3> forces) = nullptr;
   void (*solve)(void*) = [](void*) {};
   void (*findContacts)(void*) = [](void*) {};
   void (*selfCollide)(void*) = [](void*) {};
@@ -38,6 +40,9 @@ struct EngineTable {
   // What a frame leaves behind.
   void (*readState)(const void*, int cloth, std::span<Vec3> positions, std::span<Vec3> previous) = nullptr;
   void (*readAnchors)(const void*, int cloth, std::vector<Vec3>& anchors) = nullptr;  ///< Of the pins, see WorldState.
+  void (*readFolds)(const void*, int cloth, std::vector<Fold>& folds) = [](const void*, int, std::vector<Fold>& folds) {
+    folds.clear();
+  };
   /// The state of one cloth at `time` [s], which may be that of another World with the same cloths.
   void (*writeState)(void*, int cloth, const WorldState::Cloth&, double time) = nullptr;
   Stretch (*greatestStretch)(const void*) = nullptr;

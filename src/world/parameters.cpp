@@ -215,6 +215,8 @@ constexpr RowOf<&Scene::planes, Field> Plane{"plane"};
 template <auto Field>
 constexpr RowOf<&Scene::patches, Field> PatchOf{"patch"};
 template <auto Field>
+constexpr RowOf<&Scene::tethers, Field> TetherOf{"tether"};
+template <auto Field>
 constexpr RowOf<&Scene::pinMotions, Field> Motion{"pin_motion"};
 template <auto Field>
 constexpr RowOf<&Scene::wind, Field> Wind{"wind"};
@@ -330,6 +332,12 @@ std::vector<Parameter> MakeTable() {
     Cloth<&C::bendDamping>({.name = "bend_damping", .label = "Bend damping", .unit = "s", .min = 0, .max = 1e3,
       .typicalMin = 0, .typicalMax = 0.05, .engine = kFabric,
       .help = "The same for bending."}),
+    Cloth<&C::foldYield>({.name = "fold_yield", .label = "Fold yield", .unit = "1/m", .min = 0, .max = 1e6,
+      .typicalMin = 0, .typicalMax = 1000, .engine = kFabric,
+      .help = "Curvature beyond which a fold stays, with bending_law hinges; 0: none does; paper 30, a crease in cotton 300."}),
+    Cloth<&C::foldHardening>({.name = "fold_hardening", .label = "Fold hardening", .min = 0, .max = 1e3,
+      .typicalMin = 0, .typicalMax = 2, .engine = kFabric,
+      .help = "How much more angle a fold bears per angle that has set; 0: no more."}),
     Cloth<&C::strainLimit>({.name = "strain_limit", .label = "Strain limit", .min = 0, .max = 1e3, .minExclusive = true,
       .typicalMin = 0.01, .typicalMax = 1, .engine = kFabric,
       .help = "Strain from which the yarns lock and the stress grows with the square of the rest; cotton 0.2."}),
@@ -383,6 +391,20 @@ std::vector<Parameter> MakeTable() {
     PatchOf<&Patch::density>({.name = "density", .label = "Density", .min = 0, .max = 1e6, .minExclusive = true,
       .typicalMin = 0.1, .typicalMax = 10, .logarithmic = true,
       .help = "Times the density."}),
+
+    TetherOf<&Tether::cloth>({.name = "cloth", .label = "Cloth", .min = 0, .max = kMostPoints,
+      .help = "Which cloth, counted from 0."}),
+    TetherOf<&Tether::points>({.name = "points", .label = "Points", .required = true,
+      .help = "Points on a rope each, as [i, j] or a vertex."}),
+    TetherOf<&Tether::anchor>({.name = "anchor", .label = "Anchor", .unit = "m", .min = -kFarthest, .max = kFarthest,
+      .required = true,
+      .typicalMin = -2, .typicalMax = 2, .help = "Where the ropes are tied."}),
+    TetherOf<&Tether::length>({.name = "length", .label = "Length", .unit = "m", .min = 0, .max = kFarthest,
+      .required = true,
+      .typicalMin = 0, .typicalMax = 2, .help = "Up to which a rope is slack."}),
+    TetherOf<&Tether::stiffness>({.name = "stiffness", .label = "Stiffness", .unit = "N/m", .min = 0, .max = 1e9,
+      .minExclusive = true,
+      .typicalMin = 10, .typicalMax = 1e6, .logarithmic = true, .help = "Force per way beyond the length."}),
 
     Motion<&PinMotion::cloth>({.name = "cloth", .label = "Cloth", .min = 0, .max = kMostPoints,
       .help = "Which cloth, counted from 0."}),
@@ -497,6 +519,7 @@ constexpr ParameterGroup kGroups[] = {
     Group<&Scene::spheres>("sphere", false, "A ball that cloth rests on."),
     Group<&Scene::planes>("plane", false, "An endless flat wall or floor."),
     Group<&Scene::patches>("patch", false, "A part of a cloth whose material differs from the rest by factors."),
+    Group<&Scene::tethers>("tether", false, "Ropes from points of a cloth to a place, slack up to their length."),
     Group<&Scene::pinMotions>("pin_motion", false, "Carries pinned points of a cloth along a straight line."),
     Group<&Scene::wind>("wind", false, "Moving air that pushes on the cloth."),
     Group<&Scene::simulation>("simulation", false, "How time is cut into steps, and which rules act."),

@@ -94,6 +94,7 @@ struct World::Impl {
   void Build();
   void Start();
   void Configure(std::shared_ptr<const Scene> changed);
+  bool AskForces();
   void ReadState();
   void ComputeVelocities(Cloth& cloth);
   void FinishStep();
@@ -105,6 +106,7 @@ struct World::Impl {
     std::vector<std::int32_t> pinned;  // ascending
     std::vector<Vec3> positions, previous, velocities;
     std::vector<Vec3> lastFrame;
+    std::vector<Vec3> forces;  // of this step, where the program has any
   };
 
   Executor executor;
@@ -117,6 +119,8 @@ struct World::Impl {
   std::vector<Handle> handles;
   std::vector<Ball> balls;
   std::vector<Gust> gusts;
+  ForceFunction forces;                             // empty: none
+  std::vector<Vec3> stepPositions, stepVelocities;  // for those, of one cloth
 };
 
 void World::Impl::Build() {
@@ -157,6 +161,29 @@ void World::Impl::Start() {
   handles.clear();
   balls.clear();
   gusts.clear();
+}
+
+/// Asks for the forces of the program's own in the step that ends at report.time, from the state in which it begins.
+/// False: one of them is none, and report.divergence says which.
+bool World::Impl::AskForces() {
+  const double dt = scene->TimeStep();
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const int cloth = static_cast<int>(c);
+    const std::size_t count = cloths[c].positions.size();
+    stepPositions.resize(count);
+    stepVelocities.resize(count);
+    engine->readState(engineState.get(), cloth, stepPositions, stepVelocities);
+    for (std::size_t v = 0; v < count; ++v) stepVelocities[v] = (stepPositions[v] - stepVelocities[v]) / dt;
+    cloths[c].forces.assign(count, Vec3{});
+    forces({cloth, report.time - dt, stepPositions, stepVelocities, cloths[c].forces});
+    for (std::size_t v = 0; v < count; ++v) {
+      const Vec3& force = cloths[c].forces[v];
+      if (Length(force) <= kMostForce) continue;  // Not so where it is not a number.
+      report.divergence = ExplainForce(report.step, cloth, static_cast<int>(v), force);
+      return false;
+    }
+  }
+  return true;
 }
 
 void World::Impl::ReadState() {
@@ -231,7 +258,10 @@ const StepReport& World::Step() {
     engine.moveColliders(state, report.time);
     MoveBalls(*w.scene, dt, w.balls);
     clock.Finished(Stage::MoveColliders);
+    if (w.forces && !w.AskForces()) break;
     const bool inBounds = engine.applyForces(state, report.time, w.gusts, w.handles);
+    for (int c = 0; w.forces && c < ClothCount(); ++c)
+      engine.addForces(state, c, w.cloths[static_cast<std::size_t>(c)].forces);
     clock.Finished(Stage::ApplyForces);
     if (!inBounds) break;
     engine.solve(state);
@@ -250,9 +280,10 @@ const StepReport& World::Step() {
   VertexRef lost = engine.findOutOfBounds(state);
   const Stretch stretch = engine.greatestStretch(state);
   if (lost.cloth < 0 && stretch.ratio > kDivergedStretch) lost = stretch.at;
-  if (lost.cloth >= 0) {
-    // The reader keeps the state of the last good frame.
+  if (!report.divergence && lost.cloth >= 0)
     report.divergence = ExplainDivergence(*w.scene, report.step, lost.cloth, lost.vertex);
+  if (report.divergence) {
+    // The reader keeps the state of the last good frame.
     engine.takeCounts(state);
   } else {
     ++report.frame;
@@ -315,6 +346,10 @@ void World::AddGust(const Gust& gust) {
   impl_->gusts.push_back(gust);
 }
 
+void World::SetForces(ForceFunction forces) {
+  impl_->forces = std::move(forces);
+}
+
 std::span<const Handle> World::handles() const {
   return impl_->handles;
 }
@@ -332,6 +367,7 @@ void World::Save(WorldState& state) const {
     state.cloths[c].positions = w.cloths[c].positions;
     state.cloths[c].previous = w.cloths[c].previous;
     w.engine->readAnchors(w.engineState.get(), static_cast<int>(c), state.cloths[c].anchors);
+    w.engine->readFolds(w.engineState.get(), static_cast<int>(c), state.cloths[c].folds);
   }
   state.handles = w.handles;
   state.balls = w.balls;
@@ -370,6 +406,7 @@ std::size_t WorldState::Bytes() const {
   for (const Cloth& cloth : cloths) {
     bytes += sizeof cloth;
     bytes += (cloth.positions.capacity() + cloth.previous.capacity() + cloth.anchors.capacity()) * sizeof(Vec3);
+    bytes += cloth.folds.capacity() * sizeof(Fold);
   }
   return bytes + handles.capacity() * sizeof(Handle) + balls.capacity() * sizeof(Ball) +
          gusts.capacity() * sizeof(Gust);

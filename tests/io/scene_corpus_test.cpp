@@ -73,8 +73,10 @@ TEST_CASE("The text that the corpus is made from is a good scene, with every pla
   Origins origins;
   const Result<Scene> result = ParseScene(good.text, "test", &origins);
   REQUIRE_MESSAGE(result.ok(), Format(result.diagnostics()));
-  // Its engine has no patches.
-  for (const Diagnostic& d : result.diagnostics()) CHECK(StartsWith(d.message, "/patch: only the engine"));
+  // Its engine has no patches and no ropes.
+  for (const Diagnostic& d : result.diagnostics()) {
+    CHECK((StartsWith(d.message, "/patch: only the engine") || StartsWith(d.message, "/tether: only the engine")));
+  }
   CHECK(test::Same(*result, OneOfEach()));
   for (const Parameter& p : Parameters()) {
     if (!IsHeeded(p, OneOfEach())) continue;

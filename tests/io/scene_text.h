@@ -17,6 +17,7 @@ inline Scene OneOfEach(Engine engine = Engine::Springs) {
   scene.simulation.engine = engine;
   for (const ParameterGroup& group : ParameterGroups()) group.resize(scene, 1);
   scene.cloths[0].pinned = {{0, 0}, {49, 0}};
+  scene.tethers[0].points = {{2, 3}};
   return scene;
 }
 

@@ -19,6 +19,7 @@ Scene OneOfEach() {
   Scene scene;
   for (const ParameterGroup& group : ParameterGroups()) group.resize(scene, 1);
   scene.cloths[0].pinned = {{0, 0}, {49, 0}};  // a motion needs a pin that it moves
+  scene.tethers[0].points = {{2, 3}};
   return scene;
 }
 
@@ -295,9 +296,11 @@ TEST_CASE("A wrong assignment changes nothing and says why") {
 TEST_CASE("A scene of sensible settings has nothing wrong with it") {
   Scene scene = OneOfEach();
   scene.spheres[0].origin = {0, 1, 0};
-  REQUIRE(CheckScene(scene).size() == 1);
+  REQUIRE(CheckScene(scene).size() == 2);
   CHECK(Mentions(CheckScene(scene), Severity::Warning, "/patch/0: only the engine \"fabric\" heeds this"));
+  CHECK(Mentions(CheckScene(scene), Severity::Warning, "/tether/0: only the engine \"fabric\" heeds this"));
   scene.patches.clear();
+  scene.tethers.clear();
   CHECK(CheckScene(scene).empty());
 }
 

@@ -19,7 +19,7 @@ PointEnergy<T> Handle(T stiffness, const Vector3<T>& target, const Vector3<T>& x
 /// derivative is exact where it is taut: k n nᵀ + k (1 - length/|d|) (1 - n nᵀ). (Kim, Chentanez, Müller-Fischer 2012,
 /// "Long range attachments", have such tethers as constraints.)
 template <class T>
-PointEnergy<T> Tether(T stiffness, const Vector3<T>& anchor, T length, const Vector3<T>& x) {
+PointEnergy<T> TetherEnergy(T stiffness, const Vector3<T>& anchor, T length, const Vector3<T>& x) {
   const Vector3<T> d = x - anchor;
   const T distance = Sqrt(Dot(d, d));
   const Vector3<T> n = d * (T(1) / Greater(distance, T(1e-18)));

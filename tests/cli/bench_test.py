@@ -1,0 +1,54 @@
+"""percale bench as a verb: what it prints and writes. Times are told, never judged."""
+
+import json
+import unittest
+
+from program import ProgramTest
+
+
+class Bench(ProgramTest):
+    def test_fabric_json(self):
+        done = self.run_program("bench", "fabric", "--sizes", "10,16", "--json", "-o", "a/b")
+        data = json.loads(done.stdout)
+        runs = data["error_against_time"]
+        self.assertEqual({(run["side"], run["stiffness"]) for run in runs},
+                         {(side, stiffness) for side in (10, 16) for stiffness in (1, 8, 64)})
+        for side in (10, 16):
+            for stiffness in (1, 8, 64):
+                mine = [run for run in runs if (run["side"], run["stiffness"]) == (side, stiffness)]
+                error = {(run["method"], run["setting"]): run["error"] for run in mine}
+                # What is asked to do more comes nearer to the converged run, by whatever method.
+                self.assertLess(error["engine", "8 x 16"], 0.01)
+                self.assertLess(error["Newton, direct", "4 iterations"], 0.01)
+                self.assertLess(error["XPBD", "320 substeps"], error["XPBD", "10 substeps"])
+                self.assertTrue(all(run["ms_per_frame"] > 0 for run in mine))
+        self.assertEqual([scale["side"] for scale in data["scaling"]], [10, 16])
+        self.assertTrue(all(scale["peak_bytes"] > 1e6 and scale["newton"] >= 1 for scale in data["scaling"]))
+        self.assertEqual([(target["measured"], target["holds"]) for target in data["targets"]], [("equal", True)])
+        self.assertTrue((self.folder / "a/b/fabric.html").exists())
+
+    def test_fabric_table_and_page(self):
+        done = self.run_program("bench", "fabric", "--sizes", "10", "--frames", "21", "--threads", "3")
+        for text in ("10 x 10 vertices, 64 times cotton's stiffness", "3 threads", "times faster than XPBD",
+                     "equal to the last bit"):
+            self.assertIn(text, done.stdout)
+        self.assertEqual(self.files(), ["benchmarks", "benchmarks/fabric.html"])
+        page = (self.folder / "benchmarks/fabric.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count("<svg"), 4)  # three stiffnesses, and the cost per vertex
+        self.assertNotRegex(page, r"(src|href)=\"(?!#|data:)")  # needs no other file
+
+    def test_springs_beside_the_plain_twin(self):
+        done = self.run_program("bench", "springs", "--sizes", "12", "--frames", "4", "--json")
+        data = json.loads(done.stdout)
+        self.assertTrue(data)
+        self.assertEqual(self.files(), [])
+
+    def test_an_unwritable_place_shows_before_the_work(self):
+        (self.folder / "benchmarks").write_text("a file")
+        done = self.run_program("bench", "fabric", "--sizes", "10", code=1)
+        self.assertIn("benchmarks", done.stderr)
+        self.assertNotIn("stiffness", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
