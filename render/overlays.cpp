@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/cloth_model.h"
 #include "render/heat_scale.h"
 #include "render/scene_view.h"
 #include "world/measure.h"
@@ -23,6 +24,8 @@ constexpr OverlayInfo kOverlays[] = {
 constexpr Rgb kNormalColor{0.337f, 0.706f, 0.914f};
 constexpr Rgb kPinColor{0.902f, 0.624f, 0};
 constexpr Rgb kPairColor = kContactColors[1], kColliderColor = kContactColors[2];
+constexpr Rgb kRopeColor{0.55f, 0.43f, 0.3f};
+constexpr int kRopePieces = 16;
 constexpr float kPinSize = 9, kContactSize = 5;  // [pixel]
 constexpr double kManyPoints = 64;               // that make a box as bright as can be
 
@@ -52,6 +55,29 @@ void AddNormals(const DrawMesh& mesh, double length, Marks& marks) {
 void AddPins(const ClothShape& cloth, Marks& marks) {
   for (const std::int32_t pin : cloth.pinned)
     marks.points.push_back(At(cloth.positions[static_cast<std::size_t>(pin)], kPinColor, kPinSize));
+}
+
+void AddTethers(const Scene& scene, std::span<const ClothShape> cloths, const Vec3& down, Marks& marks) {
+  for (const Tether& tether : scene.tethers) {
+    const auto cloth = static_cast<std::size_t>(tether.cloth);
+    for (const GridPoint& point : tether.points) {
+      const auto vertex = VertexOf(scene.cloths[cloth], point);
+      if (!vertex) continue;
+      const Vec3 from = cloths[cloth].positions[static_cast<std::size_t>(*vertex)], way = tether.anchor - from;
+      const double across = Length(way), slack = std::max(tether.length - across, 0.0);
+      // A flat parabola over a way d that hangs through by s is d + 8 s^2 / 3 d long; upright it hangs by half.
+      const double sag = std::min(std::sqrt(0.375 * across * slack) + 0.5 * slack, 0.5 * tether.length);
+      const int pieces = slack > 0 ? kRopePieces : 1;
+      const auto at = [&](int k) {
+        const double t = static_cast<double>(k) / pieces;
+        return At(from + t * way + 4 * sag * t * (1 - t) * down, kRopeColor);
+      };
+      for (int k = 0; k < pieces; ++k) {
+        marks.lines.push_back(at(k));
+        marks.lines.push_back(at(k + 1));
+      }
+    }
+  }
 }
 
 void AddContacts(std::span<const ClothShape> cloths, const ContactFinder& contacts, Marks& marks) {

@@ -1,11 +1,12 @@
 #pragma once
 /// \file
 /// What can be drawn over a picture to see what the simulation is about: normals, pins, contacts, the
-/// boxes of the spatial map. All are coloured lines and points.
+/// boxes of the spatial map; and the ropes of a scene. All are coloured lines and points.
 
 #include <span>
 #include <string_view>
 
+#include "percale/scene.h"
 #include "percale/vec3.h"
 #include "render/draw_list.h"
 
@@ -38,6 +39,9 @@ std::span<const OverlayInfo> AllOverlays();
 void AddNormals(const DrawMesh& mesh, double length, Marks& marks);
 /// A dot on each pin.
 void AddPins(const ClothShape& cloth, Marks& marks);
+/// A rope from each point of the tethers to its anchor: straight where it is taut, else hanging through along `down`,
+/// a parabola of about its length.
+void AddTethers(const Scene& scene, std::span<const ClothShape> cloths, const Vec3& down, Marks& marks);
 /// A line between two points of cloth that touch, a dot where a point touches a collider.
 void AddContacts(std::span<const ClothShape> cloths, const ContactFinder& contacts, Marks& marks);
 /// The edges of each box, brighter the more points are in it.

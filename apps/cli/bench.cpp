@@ -25,9 +25,13 @@ int BenchFabric(const Options& options) {
   const bench::FabricBench bench =
       bench::MeasureFabric({.sizes = options.sizes, .threads = options.threads, .frames = options.frames.value_or(0)});
   std::fputs((options.json ? bench::FormatJson(bench) : bench::FormatTables(bench)).c_str(), stdout);
-  const Status written = WriteFile(folder / kFabricPage, FormatBenchPage(bench, PERCALE_VERSION));
-  PrintDiagnostics(written.diagnostics());
-  if (!written) return kFailed;
+  auto files = FormatBenchPlots(bench);
+  files.emplace_back(kFabricPage, FormatBenchPage(bench, PERCALE_VERSION));
+  for (const auto& [name, content] : files) {
+    const Status written = WriteFile(folder / name, content);
+    PrintDiagnostics(written.diagnostics());
+    if (!written) return kFailed;
+  }
   if (!options.json) std::printf("\nreport            %s\n", PathText(folder / kFabricPage).c_str());
   if (!bench.Equal()) PrintError("positions differ between numbers of threads");
   return bench.Equal() ? kDone : kFailed;

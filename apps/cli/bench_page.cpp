@@ -73,4 +73,15 @@ std::string FormatBenchPage(const bench::FabricBench& bench, const std::string& 
   return html + "</main>\n</body>\n</html>\n";
 }
 
+std::vector<std::pair<std::string, std::string>> FormatBenchPlots(const bench::FabricBench& bench) {
+  std::vector<std::pair<std::string, std::string>> plots;
+  const bench::FabricTable* largest = nullptr;  // of cotton as it is
+  for (const bench::FabricTable& table : bench.tables) {
+    if (table.stiffness == 1 && (!largest || table.side > largest->side)) largest = &table;
+  }
+  if (largest) plots.emplace_back("fabric_error.svg", FormatSvgFile(ErrorAgainstTime(*largest)));
+  plots.emplace_back("fabric_cost.svg", FormatSvgFile(CostPerVertex(bench)));
+  return plots;
+}
+
 }  // namespace percale::cli

@@ -140,4 +140,11 @@ std::string FormatSvg(const Plot& plot) {
   return svg + "</svg>\n";
 }
 
+std::string FormatSvgFile(const Plot& plot) {
+  std::string svg = FormatSvg(plot);
+  constexpr std::string_view kTag = "<svg ";
+  svg.insert(svg.find(">\n") + 2, "<style>" + std::string(PageStyle()) + "</style>\n");
+  return svg.insert(kTag.size(), "xmlns=\"http://www.w3.org/2000/svg\" ");
+}
+
 }  // namespace percale::cli

@@ -35,5 +35,7 @@ struct Plot {
 /// The plot as an <svg> element of class "plot", with a legend where there are several series. Its title and
 /// labels may be any text. Without points it has axes alone.
 std::string FormatSvg(const Plot& plot);
+/// The same as a file of its own, which brings the style sheet.
+std::string FormatSvgFile(const Plot& plot);
 
 }  // namespace percale::cli

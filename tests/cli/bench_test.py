@@ -2,6 +2,7 @@
 
 import json
 import unittest
+import xml.etree.ElementTree
 
 from program import ProgramTest
 
@@ -32,7 +33,12 @@ class Bench(ProgramTest):
         for text in ("10 x 10 vertices, 64 times cotton's stiffness", "3 threads", "times faster than XPBD",
                      "equal to the last bit"):
             self.assertIn(text, done.stdout)
-        self.assertEqual(self.files(), ["benchmarks", "benchmarks/fabric.html"])
+        self.assertEqual(self.files(), ["benchmarks"] + ["benchmarks/fabric" + name
+                                                         for name in (".html", "_cost.svg", "_error.svg")])
+        for name in ("cost", "error"):
+            plot = xml.etree.ElementTree.parse(self.folder / f"benchmarks/fabric_{name}.svg").getroot()
+            self.assertEqual(plot.tag, "{http://www.w3.org/2000/svg}svg")
+            self.assertTrue(plot.findall(".//{http://www.w3.org/2000/svg}circle"))
         page = (self.folder / "benchmarks/fabric.html").read_text(encoding="utf-8")
         self.assertEqual(page.count("<svg"), 4)  # three stiffnesses, and the cost per vertex
         self.assertNotRegex(page, r"(src|href)=\"(?!#|data:)")  # needs no other file

@@ -221,6 +221,32 @@ TEST_CASE("normals, contacts and boxes are the lines that they should be") {
   CHECK(corners.size() == 8);
 }
 
+TEST_CASE("a rope is straight where it is taut, and else about as long as it is") {
+  Scene scene;
+  scene.cloths = {test::Grid(4)};
+  scene.tethers.push_back({.cloth = 0, .points = {{1, 2}}, .anchor = {3, 4, 0}, .length = 5});
+  std::vector<Vec3> positions(16, Vec3{100, 0, 0});
+  ClothShape shape;
+  shape.positions = positions;
+  const auto length = [&](Vec3 from) {
+    positions[9] = from;
+    Marks marks;
+    AddTethers(scene, std::span(&shape, 1), {0, -1, 0}, marks);
+    REQUIRE(!marks.lines.empty());
+    const auto at = [&](const Mark& mark) { return Vec3{mark.position[0], mark.position[1], mark.position[2]}; };
+    CHECK(Length(at(marks.lines.front()) - from) < 1e-6);
+    CHECK(Length(at(marks.lines.back()) - scene.tethers[0].anchor) < 1e-6);
+    double sum = 0;
+    for (std::size_t k = 0; k < marks.lines.size(); k += 2) sum += Length(at(marks.lines[k + 1]) - at(marks.lines[k]));
+    return sum;
+  };
+  CHECK(length({-3, -4, 0}) == doctest::Approx(10));  // drawn out
+  CHECK(length({0, 0, 0}) == doctest::Approx(5));
+  for (const double share : {0.02, 0.2, 0.5, 0.9}) {
+    CHECK(length({3 - 5 * share, 4, 0}) == doctest::Approx(5).epsilon(0.12));
+  }
+}
+
 TEST_CASE("viridis begins dark violet, ends yellow, and grows lighter all the way") {
   // The ends and the middle of the original.
   const Rgb ends[] = {{0.267f, 0.005f, 0.329f}, {0.128f, 0.567f, 0.551f}, {0.993f, 0.906f, 0.144f}};
