@@ -289,7 +289,7 @@ class Importer {
     if (!MakeMaterial(mesh, cut)) return mesh;
     mesh.uv = cut.cornerUv.empty() ? ProjectedUv(mesh.positions) : VertexUv(mesh.positions.size(), cut);
     mesh.triangles = std::move(cut.triangles);
-    Repair(mesh, cut.polygon, kept);
+    Repair(mesh, cut, kept);
     return mesh;
   }
 
@@ -340,8 +340,9 @@ class Importer {
                                                   " m per unit of the texture would make them equal"));
   }
 
-  void Repair(RestMesh& mesh, const std::vector<std::size_t>& polygon, std::span<const std::int32_t> kept) {
+  void Repair(RestMesh& mesh, const Triangles& cut, std::span<const std::int32_t> kept) {
     MeshProblems problems = FindMeshProblems(mesh);
+    if (!problems.HasErrors() && options_.rest == RestShape::Texture) problems.folded = FindFolded(mesh, cut.cornerUv);
     // Those that were welded to others are no surprise.
     std::vector<std::int32_t> lone;
     for (const std::int32_t v : problems.unreferenced) {
@@ -351,7 +352,7 @@ class Importer {
     problems.unreferenced = std::move(lone);
     for (const MeshProblem& problem : DescribeMeshProblems(problems)) {
       if (problem.triangle >= 0)
-        About(polygon[Z(problem.triangle)], problem.severity, problem.message);
+        About(cut.polygon[Z(problem.triangle)], problem.severity, problem.message);
       else
         messages_.Add({problem.severity, {source_.file(), 0, 0}, problem.message, {}, 0});
     }

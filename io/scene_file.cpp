@@ -38,11 +38,6 @@ std::vector<std::string_view> SplitPath(std::string_view path) {
   return parts;
 }
 
-/// The file of a cloth's mesh, whose path begins at the folder of the scene's file.
-std::filesystem::path MeshFile(const Scene& scene, const ClothSettings& cloth) {
-  return TextPath(scene.name).parent_path() / TextPath(cloth.mesh);
-}
-
 /// Whether the cloth has a mesh to read, and does not hold it yet.
 bool LacksMesh(const ClothSettings& cloth) {
   if (cloth.shape != Shape::Mesh || cloth.mesh.empty()) return false;
@@ -489,6 +484,10 @@ Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins) {
 
 Result<Scene> ParseScene(const std::string& text, const std::string& name, Origins* origins) {
   return ReadScene(JsonDocument::Parse(text, name), name, origins);
+}
+
+std::filesystem::path MeshFile(const Scene& scene, const ClothSettings& cloth) {
+  return TextPath(scene.name).parent_path() / TextPath(cloth.mesh);
 }
 
 Status LoadMeshes(Scene& scene) {

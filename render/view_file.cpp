@@ -186,6 +186,7 @@ Result<std::optional<ViewFile>> ReadPictureView(const std::filesystem::path& fil
   view.look = seen.look;
   view.camera = seen.camera;
   opened.view = std::move(view);
+  opened.width = image->width, opened.height = image->height;
   const std::optional<double> frame = ParseNumber(*frameText);
   if (!frame || !(*frame >= 0 && *frame <= kMostFrames && *frame == std::floor(*frame)))
     return fail("its percale:frame is damaged: expected a whole number >= 0, got " + Quote(*frameText, 40));

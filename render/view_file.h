@@ -23,8 +23,9 @@ inline constexpr std::size_t kMostStateInPicture = std::size_t{64} << 20;
 /// What a file opens.
 struct ViewFile {
   Scene scene;
-  Origins origins;           ///< Of a scene file's values.
-  std::optional<View> view;  ///< Of a picture.
+  Origins origins;            ///< Of a scene file's values.
+  std::optional<View> view;   ///< Of a picture.
+  int width = 0, height = 0;  ///< Of a picture [pixel].
   /// Of a checkpoint; of a picture, where it may have seen more than its scene tells: a hand, a ball, settings
   /// that changed on the way. Its scene is `scene` but for look and camera.
   std::shared_ptr<const WorldState> state;

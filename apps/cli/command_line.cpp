@@ -260,8 +260,8 @@ class Builder {
   }
 
   void Size(CLI::App& app) {
-    Call(app, "--size", "Width and height in pixels; default 1024x800", "WxH", "Picture",
-         [this](const std::string& text) {
+    Call(app, "--size", "Width and height in pixels; default 1024x800, or as the picture that shot is given", "WxH",
+         "Picture", [this](const std::string& text) {
            const std::vector<std::string> parts = Split(text, 'x');
            if (parts.size() != 2) Refuse("--size", "WIDTHxHEIGHT such as 1024x800", text);
            options_.sizeGiven = true;

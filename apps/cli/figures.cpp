@@ -55,10 +55,12 @@ std::string ProgramFingerprint() {
 /// the shaders do not count here.
 std::string AssetsFingerprint(const fs::path& root) {
   std::vector<fs::path> files;
-  std::error_code ignored;
   for (const char* folder : {"shaders", "textures"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder, ignored)) {
-      if (entry.path().extension() != ".json") files.push_back(entry.path());
+    std::error_code error;  // What cannot be read has no part in the pictures either.
+    constexpr auto kSkip = fs::directory_options::skip_permission_denied;
+    for (fs::recursive_directory_iterator entry(root / folder, kSkip, error), end; !error && entry != end;
+         entry.increment(error)) {
+      if (entry->path().extension() != ".json") files.push_back(entry->path());
     }
   }
   std::sort(files.begin(), files.end());

@@ -184,6 +184,7 @@ std::variant<Session, int> OpenSession(const Options& options) {
   session.scene = std::move(opened->scene);
   session.origins = std::move(opened->origins);
   session.view = std::move(opened->view);
+  session.width = opened->width, session.height = opened->height;
   session.state = std::move(opened->state);
   session.frame = opened->frame;
   Diagnostics warnings = opened.diagnostics();

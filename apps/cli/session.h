@@ -27,6 +27,7 @@ struct Session {
   Scene scene;
   std::filesystem::path file;
   std::optional<percale::View> view;
+  int width = 0, height = 0;  ///< Of a picture that was opened [pixel].
   std::shared_ptr<const WorldState> state;
   int frame = 0;                                   ///< From the start, without a state.
   std::vector<Preset> presets;                     ///< Of --preset.

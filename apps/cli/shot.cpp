@@ -10,10 +10,15 @@ namespace percale::cli {
 
 namespace fs = std::filesystem;
 
-int Shot(const Options& options) {
-  auto opened = OpenSession(options);
+int Shot(const Options& asked) {
+  auto opened = OpenSession(asked);
   if (const int* code = std::get_if<int>(&opened)) return *code;
   const Session& session = std::get<Session>(opened);
+  Options options = asked;
+  if (!asked.sizeGiven && session.width > 0) {  // A picture is drawn again as large as it is.
+    options.width = session.width;
+    options.height = session.height;
+  }
 
   const fs::path file = options.output.empty() ? DefaultOutput(session, ".png") : TextPath(options.output);
   if (LowerExtension(file) != ".png" && options.output.rfind("/dev/", 0) != 0) {

@@ -43,11 +43,9 @@ std::string_view WithoutPath(const Diagnostic& d) {
 }  // namespace
 
 SceneSource::SceneSource(const ViewerOptions& options)
-    : options_(options),
-      file_(options.sceneFile),
-      browsed_(options.sceneFile),
-      scene_(options.scene),
-      watch_(options.sceneFile) {}
+    : options_(options), file_(options.sceneFile), browsed_(options.sceneFile), scene_(options.scene) {
+  Watch();
+}
 
 Result<SceneReading> SceneSource::Read(const fs::path& file) const {
   // Reading a pipe would wait for a writer, and the window with it.
@@ -74,14 +72,38 @@ Result<SceneReading> SceneSource::Read(const fs::path& file) const {
 }
 
 Result<SceneReading> SceneSource::ReadAgain() {
-  watch_.Accept();
+  for (FileWatch& watch : watches_) watch.Accept();
   return Read(file_);
 }
 
 void SceneSource::Adopt(const fs::path& file, const Scene& scene) {
   file_ = browsed_ = file;
-  watch_ = FileWatch(file);
   scene_ = scene;
+  Watch();
+}
+
+void SceneSource::Adopt(const Scene& scene) {
+  const auto meshes = [](const Scene& s) {
+    std::vector<std::string> files;
+    for (const ClothSettings& cloth : s.cloths) files.push_back(cloth.mesh);
+    return files;
+  };
+  const bool others = meshes(scene) != meshes(scene_);
+  scene_ = scene;
+  if (others) Watch();
+}
+
+bool SceneSource::Changed() {
+  bool changed = false;  // All are looked at, each time.
+  for (FileWatch& watch : watches_) changed = watch.Changed() || changed;
+  return changed;
+}
+
+void SceneSource::Watch() {
+  watches_.assign(1, FileWatch(file_));
+  for (const ClothSettings& cloth : scene_.cloths) {
+    if (!cloth.mesh.empty()) watches_.emplace_back(MeshFile(scene_, cloth));
+  }
 }
 
 fs::path SceneSource::Folder() const {

@@ -33,9 +33,9 @@ class SceneSource {
   /// `scene` was read from `file`, which is the scene's from now on.
   void Adopt(const std::filesystem::path& file, const Scene& scene);
   /// What ReadAgain has read counts.
-  void Adopt(const Scene& scene) { scene_ = scene; }
-  /// Whether the file was saved since it was read.
-  bool Changed() { return watch_.Changed(); }
+  void Adopt(const Scene& scene);
+  /// Whether the file, or that of one of its meshes, was saved since it was read. See FileWatch.
+  bool Changed();
 
   /// The scene files of the folder that the current one is in, by name.
   std::vector<std::filesystem::path> Files() const;
@@ -46,12 +46,13 @@ class SceneSource {
 
  private:
   std::filesystem::path Folder() const;
+  void Watch();
 
   const ViewerOptions& options_;
   std::filesystem::path file_;
   std::filesystem::path browsed_;
   Scene scene_;
-  FileWatch watch_;
+  std::vector<FileWatch> watches_;  // the file, and the meshes' files
 };
 
 }  // namespace percale::viewer

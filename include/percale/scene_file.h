@@ -22,8 +22,11 @@ Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins = nu
 /// The same for a text in memory; `name` stands for the file in messages.
 Result<Scene> ParseScene(const std::string& text, const std::string& name, Origins* origins = nullptr);
 
-/// Reads the meshes that the cloths of shape Shape::Mesh name and do not hold yet with these settings; a path that is
-/// not absolute begins at the folder of `scene.name`. Changed settings need it before CheckScene accepts them.
+/// The file of a cloth's mesh: a path that is not absolute begins at the folder of `scene.name`.
+std::filesystem::path MeshFile(const Scene& scene, const ClothSettings& cloth);
+
+/// Reads the meshes that the cloths of shape Shape::Mesh name and do not hold yet with these settings. Changed
+/// settings need it before CheckScene accepts them.
 Status LoadMeshes(Scene& scene);
 
 /// The scene with the paths of its meshes absolute, for a text that is kept elsewhere.

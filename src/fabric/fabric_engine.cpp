@@ -59,7 +59,7 @@ void FabricEngine::StartFolds() {
 }
 
 /// What the step that has ended leaves in the folds.
-void FabricEngine::SetFolds() {
+void FabricEngine::YieldFolds() {
   if (model_.yield.empty()) return;
   ForRange(executor_, folds_.size(), [&](int h) {
     const std::int32_t* v = model_.hinges[Index(h)].vertex;
@@ -193,7 +193,7 @@ void FabricEngine::Solve() {
   counts_.converged = counts_.converged && result.converged;
   std::swap(previous_, position_);
   std::swap(position_, next_);
-  SetFolds();
+  YieldFolds();
 }
 
 void FabricEngine::CollideBall(Ball& ball) {

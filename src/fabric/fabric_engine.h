@@ -70,7 +70,7 @@ class FabricEngine {
   void SetUp();
   void UpdatePins();
   void StartFolds();
-  void SetFolds();
+  void YieldFolds();
   void Hold(std::span<const Handle> handles);
   void Blow(double time, std::span<const Gust> gusts);
   VertexRef RefOf(int vertex) const;

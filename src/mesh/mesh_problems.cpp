@@ -169,6 +169,29 @@ MeshProblems FindMeshProblems(const RestMesh& mesh) {
   return problems;
 }
 
+std::vector<std::int32_t> FindFolded(const RestMesh& mesh, std::span<const Vec2> cornerUv) {
+  const Topology topology = BuildTopology(mesh.positions.size(), mesh.triangles);
+  const auto uvOf = [&](std::int32_t triangle, std::int32_t vertex) {
+    const Triangle& t = mesh.triangles[Z(triangle)];
+    return cornerUv[3 * Z(triangle) + (t.a == vertex ? 0 : t.b == vertex ? 1 : 2)];
+  };
+  std::vector<std::int32_t> folded;
+  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    const auto& [t0, t1] = topology.edgeTriangles[e];
+    const auto& [apex0, apex1] = topology.edgeOpposite[e];
+    if (t0 < 0 || t1 < 0 || apex0 == apex1) continue;
+    const Edge& edge = topology.edges[e];
+    const Vec2 a = uvOf(t0, edge.a), b = uvOf(t0, edge.b);
+    if (!(a == uvOf(t1, edge.a) && b == uvOf(t1, edge.b))) continue;  // a seam
+    const auto side = [&](const Vec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); };
+    if (!(side(uvOf(t0, apex0)) * side(uvOf(t1, apex1)) > 0)) continue;
+    folded.push_back(MaterialArea(cornerUv, Z(t0)) < 0 ? t0 : t1);
+  }
+  std::sort(folded.begin(), folded.end());
+  folded.erase(std::unique(folded.begin(), folded.end()), folded.end());
+  return folded;
+}
+
 std::vector<MeshProblem> DescribeMeshProblems(const MeshProblems& problems) {
   std::vector<MeshProblem> found;
   const auto about = [&](Severity severity, const std::vector<std::int32_t>& triangles, const char* one,
@@ -206,6 +229,9 @@ std::vector<MeshProblem> DescribeMeshProblems(const MeshProblems& problems) {
         "triangles face the other way than their neighbours", "turned over");
   about(Severity::Warning, problems.mirrored, "triangle is clockwise in the fabric",
         "triangles are clockwise in the fabric", "mirrored there");
+  about(Severity::Warning, problems.folded, "triangle lies over its neighbour in the texture",
+        "triangles lie over their neighbours in the texture",
+        "their fabric is taken as if unfolded; mend the texture coordinates if that was not meant");
   if (!problems.nonManifold.empty()) {
     const auto name = [&](std::size_t i) {
       return std::to_string(problems.nonManifold[i].a) + "-" + std::to_string(problems.nonManifold[i].b);

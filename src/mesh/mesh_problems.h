@@ -3,6 +3,7 @@
 /// What can be wrong with a mesh, in words, and the cure where there is one.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct MeshProblems {
   std::vector<std::int32_t> mirrored;  ///< Triangles that are clockwise in the fabric.
 
   // Warnings: the mesh can be simulated as it is.
+  std::vector<std::int32_t> folded;    ///< Triangles that a texture lays over their neighbour: see FindFolded.
   std::vector<Edge> nonManifold;       ///< Edges of more than two triangles, which will not resist folding.
   std::vector<std::int32_t> oneSided;  ///< The lowest triangle of each patch with one side, such as a Moebius strip.
 
@@ -44,6 +46,11 @@ struct MeshProblems {
 /// Looks for all of them. The warnings are looked for where there are no errors. Takes about a second for a million
 /// triangles.
 MeshProblems FindMeshProblems(const RestMesh& mesh);
+
+/// Triangles that lie on the same side of an edge as their neighbour in the texture, though both have the edge at the
+/// same place there: the panel is folded over. Of the two the one that is clockwise. `cornerUv` has three entries per
+/// triangle. What has other problems may be missing.
+std::vector<std::int32_t> FindFolded(const RestMesh& mesh, std::span<const Vec2> cornerUv);
 
 /// One kind of problem in words.
 struct MeshProblem {

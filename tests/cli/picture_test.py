@@ -146,6 +146,11 @@ class Shot(ProgramTest):
         again = self.shot("again.json", "--size", "32x32", "--frame", 3, name="b.png")
         self.assertEqual(again[2], read_png(self.folder / "a.png")[2])
 
+    def test_a_picture_is_drawn_again_as_it_is(self):
+        told = self.shot(self.scene(), "--size", "70x50", "--frame", 3, name="told.png")
+        self.assertEqual(self.shot("told.png", name="again.png")[:3], told[:3])
+        self.assertEqual(self.shot("told.png", "--size", "32x20", name="small.png")[:2], (32, 20))
+
     def test_every_shader(self):
         names = sorted(p.stem for p in (ROOT / "shaders").glob("*.frag"))
         for shader in (name for name in names if "." not in name):  # NAME.plane is a part of NAME.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "percale/fabrics.h"
@@ -193,4 +194,25 @@ TEST_CASE("ropes that cannot be are told") {
   CHECK(told([](Scene& s) { s.simulation.engine = Engine::Springs; }).find("only the engine \"fabric\"") !=
         std::string::npos);
   CHECK(told([](Scene& s) { s.cloths[0].foldYield = 5; }).find("bending_law quadratic") != std::string::npos);
+}
+
+TEST_CASE("pins that are carried farther apart than the cloth can stretch are told, with the worst pair and when") {
+  Scene scene = Sheet(5);
+  scene.cloths[0].pinned = {{0, 0}, {4, 0}, {0, 4}};
+  const auto said = [&] { return Format(CheckScene(scene)); };
+  // Carried all together, or within what the yarns bear.
+  scene.pinMotions.push_back({0, {}, 0, 1, {5, 0, 0}});
+  CHECK(said() == "");
+  scene.pinMotions.push_back({0, {{4, 0}}, 0, 2, {0.15, 0, 0}});
+  CHECK(said() == "");
+  scene.pinMotions.push_back({0, {{4, 0}}, 2, 3, {0.85, 0, 0}});
+  CHECK(
+      said().find("/pin_motion: pins [0, 0] and [4, 0] are carried 2 m apart at 3 s, with 1 m of cloth between them") !=
+      std::string::npos);
+  // Apart for a while only.
+  scene.pinMotions.push_back({0, {{4, 0}}, 3, 4, {-1, 0, 0}});
+  CHECK(said().find("at 3 s") != std::string::npos);
+  // The springs of the course have no such limit.
+  scene.simulation.engine = Engine::Springs;
+  CHECK(said().find("carried") == std::string::npos);
 }

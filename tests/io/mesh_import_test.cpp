@@ -366,6 +366,21 @@ TEST_CASE("Scale, and the rest shape from the texture") {
   CHECK(plain.material[1] == Vec2{0, -1});
 }
 
+TEST_CASE("A texture that lies over itself is told, mirrored panels are not") {
+  const Folder folder;
+  const auto said = [&](const std::string& uv) {
+    return Said(folder, "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n" + uv + "f 1/1 2/2 3/3\nf 2/4 4/5 3/6\n",
+                {.rest = RestShape::Texture});
+  };
+  CHECK(said("vt 0 0\nvt 1 0\nvt 0 1\nvt 1 0\nvt 1 1\nvt 0 1\n").empty());
+  const std::string folded = said("vt 0 0\nvt 1 0\nvt 0 1\nvt 1 0\nvt 0.2 0.2\nvt 0 1\n");
+  CHECK_MESSAGE(
+      Has(folded, "FILE:12:1: warning: 1 triangle lies over its neighbour in the texture (1, counted from 0)"), folded);
+  // All of it turned over, and the second triangle as a panel of its own that is mirrored.
+  CHECK(said("vt 0 0\nvt 0 1\nvt 1 0\nvt 0 1\nvt 1 1\nvt 1 0\n").empty());
+  CHECK(said("vt 0 0\nvt 1 0\nvt 0 1\nvt 3 1\nvt 3 0\nvt 4 1\n").empty());
+}
+
 TEST_CASE("A seam: two panels of one texture are sewn, and each keeps its place in the fabric") {
   const Folder folder;
   // Two squares side by side whose common vertices are there twice, almost at the same place.

@@ -133,6 +133,27 @@ class Editing(ViewerTest):
             self.assertFalse(viewer.wait("done", since, command=reload["command"])["kept"])
             self.assertEqual(viewer.step()["hash"], state_hash(self.scene, 1))
 
+    def test_a_mesh_is_read_again_when_it_is_saved(self):
+        mesh, square = os.path.join(self.root, "scene", "square.obj"), "v 0 1 0\nv 1 1 0\nv 1 0 0\nv 0 0 0\n"
+        write(mesh, square + "f 1 2 3\nf 1 3 4\n")
+        self.scene = os.path.join(self.root, "scene", "square.json")
+        write(self.scene, json.dumps({"simulation": {"engine": "fabric"},
+                                      "cloth": {"shape": "mesh", "mesh": "square.obj", "pinned": [0]}}))
+        with self.open() as viewer:
+            viewer.step()
+            since = viewer.mark()
+            write(mesh, square + "v 0.5 1.5 0\nf 1 2 3\nf 1 3 4\nf 2 1 5\n")
+            reload = viewer.wait("reload", since, what="scene")
+            self.assertFalse(viewer.wait("done", since, command=reload["command"])["kept"])
+            self.assertEqual(viewer.step()["hash"], state_hash(self.scene, 1))
+            # A broken one is told, and the old one stays.
+            since = viewer.mark()
+            write(mesh, square + "f 1 2 9\n")
+            message = viewer.wait("message", since, source="scene", severity="error",
+                                  where=lambda event: event["file"].endswith("square.obj"))
+            self.assertEqual(message["line"], 5)
+            self.assertEqual(viewer.step()["frame"], 2)
+
     def test_a_broken_scene_leaves_the_old_one(self):
         with self.open() as viewer:
             with open(self.scene, encoding="utf-8") as file:
