@@ -341,8 +341,9 @@ class Importer {
   }
 
   void Repair(RestMesh& mesh, const Triangles& cut, std::span<const std::int32_t> kept) {
-    MeshProblems problems = FindMeshProblems(mesh);
-    if (!problems.HasErrors() && options_.rest == RestShape::Texture) problems.folded = FindFolded(mesh, cut.cornerUv);
+    const bool flat = options_.rest == RestShape::Texture;
+    MeshProblems problems =
+        FindMeshProblems(mesh, flat ? std::span<const Vec2>(cut.cornerUv) : std::span<const Vec2>());
     // Those that were welded to others are no surprise.
     std::vector<std::int32_t> lone;
     for (const std::int32_t v : problems.unreferenced) {

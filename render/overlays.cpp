@@ -57,7 +57,10 @@ void AddPins(const ClothShape& cloth, Marks& marks) {
     marks.points.push_back(At(cloth.positions[static_cast<std::size_t>(pin)], kPinColor, kPinSize));
 }
 
-void AddTethers(const Scene& scene, std::span<const ClothShape> cloths, const Vec3& down, Marks& marks) {
+void AddTethers(const Scene& scene, std::span<const ClothShape> cloths, Marks& marks) {
+  const Vec3& gravity = scene.simulation.gravity;
+  const double g = Length(gravity);
+  const Vec3 down = g > 0 ? gravity / g : Vec3{};
   for (const Tether& tether : scene.tethers) {
     const auto cloth = static_cast<std::size_t>(tether.cloth);
     for (const GridPoint& point : tether.points) {

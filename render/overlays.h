@@ -39,9 +39,9 @@ std::span<const OverlayInfo> AllOverlays();
 void AddNormals(const DrawMesh& mesh, double length, Marks& marks);
 /// A dot on each pin.
 void AddPins(const ClothShape& cloth, Marks& marks);
-/// A rope from each point of the tethers to its anchor: straight where it is taut, else hanging through along `down`,
-/// a parabola of about its length.
-void AddTethers(const Scene& scene, std::span<const ClothShape> cloths, const Vec3& down, Marks& marks);
+/// A rope from each point of the tethers to its anchor: straight where it is taut, else hanging through, a parabola
+/// of about its length.
+void AddTethers(const Scene& scene, std::span<const ClothShape> cloths, Marks& marks);
 /// A line between two points of cloth that touch, a dot where a point touches a collider.
 void AddContacts(std::span<const ClothShape> cloths, const ContactFinder& contacts, Marks& marks);
 /// The edges of each box, brighter the more points are in it.

@@ -263,11 +263,7 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   list.lightViewProjection = FitLight(list.lightPosition, casters);
   list.marks.lines.clear();
   list.marks.points.clear();
-  if (view.cloths && !scene.tethers.empty()) {
-    const Vec3& gravity = scene.simulation.gravity;
-    const double g = Length(gravity);
-    AddTethers(scene, cloths, g > 0 ? gravity / g : Vec3{}, list.marks);
-  }
+  if (view.cloths) AddTethers(scene, cloths, list.marks);
   if (view.cloths && view.overlays.Any()) impl_->AddOverlays(scene, cloths, view);
   return list;
 }

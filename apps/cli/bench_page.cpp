@@ -55,11 +55,7 @@ std::string FormatTargets(const bench::FabricBench& bench) {
 
 std::string FormatBenchPage(const bench::FabricBench& bench, const std::string& version) {
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Percale: speed of the fabric engine</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>";
-  html += PageStyle();
-  html += "</style>\n</head>\n<body>\n<main>\n<h1>Speed of the fabric engine</h1>\n<p class=\"lead\">";
+      OpenPage("Percale: speed of the fabric engine", "Speed of the fabric engine") + "<p class=\"lead\">";
   html += EscapeHtml(
       Text("Percale %s. A square metre of cloth falls into its weight, held along a tenth of its upper edge at either "
            "corner. Errors are those of the 99th-percentile stretch beyond 1, against a run that was iterated until "
@@ -70,7 +66,7 @@ std::string FormatBenchPage(const bench::FabricBench& bench, const std::string& 
   for (const bench::FabricTable& table : bench.tables) html += FormatSvg(ErrorAgainstTime(table));
   html += "</div>\n<h2>Cost per vertex</h2>\n<div class=\"plots\">\n" + FormatSvg(CostPerVertex(bench)) + "</div>\n";
   html += "<h2>All numbers</h2>\n" + Element("pre", bench::FormatTables(bench));
-  return html + "</main>\n</body>\n</html>\n";
+  return html.append(ClosePage());
 }
 
 std::vector<std::pair<std::string, std::string>> FormatBenchPlots(const bench::FabricBench& bench) {

@@ -1,6 +1,5 @@
 #include "apps/cli/figure_judges.h"
 #include "apps/cli/figure_studies.h"
-#include "apps/cli/session.h"
 #include "core/text.h"
 
 namespace percale::cli {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include "apps/cli/session.h"
 #include "core/text.h"
 
 namespace percale::cli {

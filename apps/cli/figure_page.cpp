@@ -125,12 +125,8 @@ std::string ClaimData(const Claim& claim) {
 }  // namespace
 
 std::string FormatPage(const FigurePage& page) {
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>The figures of the cloth simulator's write-up</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>";
-  html += PageStyle();
-  html += "</style>\n</head>\n<body>\n<main>\n<h1>The figures of the cloth simulator's write-up</h1>\n";
+  constexpr std::string_view kTitle = "The figures of the cloth simulator's write-up";
+  std::string html = OpenPage(kTitle, kTitle);
   html +=
       "<p class=\"lead\">" +
       EscapeHtml(Text("%zu of %d figures, made by Percale %s at %d x %d pixels. Below each stands the command that "
@@ -156,7 +152,7 @@ std::string FormatPage(const FigurePage& page) {
     if (page.findings) html += FormatFindings(*page.findings, int(i));
     html += "</section>\n";
   }
-  return html + "</main>\n</body>\n</html>\n";
+  return html.append(ClosePage());
 }
 
 std::string FormatPageData(const FigurePage& page) {

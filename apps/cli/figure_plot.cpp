@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "apps/cli/html.h"
-#include "apps/cli/session.h"
 #include "core/text.h"
 #include "render/ticks.h"
 

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "apps/cli/figure_courses.h"
-#include "apps/cli/session.h"
 #include "core/text.h"
 
 namespace percale::cli {

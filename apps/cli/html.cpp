@@ -93,6 +93,17 @@ std::string Element(std::string_view name, std::string_view text) {
   return "<" + tag + ">" + EscapeHtml(text) + "</" + tag + ">";
 }
 
+std::string OpenPage(std::string_view title, std::string_view heading) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
+         Element("title", title) + "\n<link rel=\"icon\" href=\"data:,\">\n<style>" + std::string(PageStyle()) +
+         "</style>\n</head>\n<body>\n<main>\n" + Element("h1", heading) + "\n";
+}
+
+std::string_view ClosePage() {
+  return "</main>\n</body>\n</html>\n";
+}
+
 std::string_view PageStyle() {
   return kStyle;
 }

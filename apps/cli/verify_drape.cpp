@@ -81,10 +81,8 @@ CaseResult VerifyDrape(const Effort& effort) {
   result.note =
       "The cloth is held on the pedestal, as between the tester's two plates, and meets nothing else. How stiff the "
       "preset bends lies within what KES-F measures for cotton of its weight and was chosen by this case: it shows "
-      "that "
-      "density, stiffness and folds go together, and is no test of the constant. Folds begin by chance: 5, 6, 7 or 8 "
-      "of "
-      "them begun on purpose give 66 to 71 %, with twice the rings 67 to 73 %.";
+      "that density, stiffness and folds go together, and is no test of the constant. Folds begin by chance: 5, 6, 7 "
+      "or 8 of them begun on purpose give 66 to 71 %, with twice the rings 67 to 73 %.";
   return result;
 }
 

@@ -168,12 +168,8 @@ std::string FormatTable(const VerifyReport& report) {
 }
 
 std::string FormatPage(const VerifyReport& report) {
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Percale against closed forms</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>";
-  html += PageStyle();
-  html += "</style>\n</head>\n<body>\n<main>\n<h1>Percale against closed forms</h1>\n<p class=\"lead\">";
+  constexpr std::string_view kTitle = "Percale against closed forms";
+  std::string html = OpenPage(kTitle, kTitle) + "<p class=\"lead\">";
   html +=
       EscapeHtml(Text("%d of %d quantities lie within their gates. Computed by the fabric engine of Percale %s, each "
                       "step solved to rounding.",
@@ -194,7 +190,7 @@ std::string FormatPage(const VerifyReport& report) {
     }
     html += FormatCase(finished);
   }
-  return html + "</main>\n</body>\n</html>\n";
+  return html.append(ClosePage());
 }
 
 std::string FormatJson(const VerifyReport& report) {

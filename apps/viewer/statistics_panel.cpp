@@ -7,6 +7,7 @@
 #include "core/text.h"
 
 namespace percale::viewer {
+
 void DrawStatisticsPanel(Session& session, UiState& state) {
   const Snapshot& snapshot = session.snapshot();
   const StepReport& report = snapshot.report;

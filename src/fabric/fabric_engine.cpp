@@ -64,7 +64,10 @@ void FabricEngine::YieldFolds() {
   ForRange(executor_, folds_.size(), [&](int h) {
     const std::int32_t* v = model_.hinges[Index(h)].vertex;
     const auto x = [&](int k) { return From<double>(position_[Index(v[k])]); };
-    folds_[Index(h)] = YieldedRestAngle(HingeAngle(x(0), x(1), x(2), x(3)), folds_[Index(h)], model_.yield[Index(h)]);
+    Fold& fold = folds_[Index(h)];
+    const SetFold<double> set = YieldedRestAngle(HingeAngle(x(0), x(1), x(2), x(3)),
+                                                 SetFold<double>{fold.rest, fold.moved}, model_.yield[Index(h)]);
+    fold = {set.rest, set.moved};
   });
 }
 
@@ -254,20 +257,19 @@ void FabricEngine::WriteState(int cloth, std::span<const Vec3> positions, std::s
 void FabricEngine::ReadFolds(int cloth, std::vector<Fold>& folds) const {
   folds.clear();
   if (folds_.empty()) return;
-  for (int h = model_.firstHinge[Index(cloth)]; h < model_.firstHinge[Index(cloth) + 1]; ++h) {
-    folds.push_back({folds_[Index(h)].rest, folds_[Index(h)].moved});
-  }
+  const int* const first = &model_.firstHinge[Index(cloth)];
+  folds.assign(folds_.begin() + first[0], folds_.begin() + first[1]);
 }
 
 void FabricEngine::WriteFolds(int cloth, std::span<const Fold> folds) {
-  const std::size_t first = Index(model_.firstHinge[Index(cloth)]);
-  const std::size_t count = Index(model_.firstHinge[Index(cloth) + 1]) - first;
-  const bool given = folds.size() == count;
+  const int* const first = &model_.firstHinge[Index(cloth)];
+  const bool given = folds.size() == Index(first[1] - first[0]);
   if (given && folds_.empty()) folds_.resize(model_.hinges.size());
   if (folds_.empty()) return;
-  for (std::size_t h = 0; h < count; ++h) {
-    folds_[first + h] = given ? SetFold<double>{folds[h].rest, folds[h].moved} : SetFold<double>{};
-  }
+  if (given)
+    std::copy(folds.begin(), folds.end(), folds_.begin() + first[0]);
+  else
+    std::fill(folds_.begin() + first[0], folds_.begin() + first[1], Fold{});
   StartFolds();
 }
 

@@ -57,7 +57,7 @@ class FabricEngine {
   /// Puts a cloth into the state that it has at `time` [s].
   void WriteState(int cloth, std::span<const Vec3> positions, std::span<const Vec3> previous,
                   std::span<const Vec3> anchors, double time);
-  /// The folds of a cloth, by hinge; none, or another number of them: all as they were made.
+  /// The same, set; none, or another number of them: all as they were made.
   void WriteFolds(int cloth, std::span<const Fold> folds);
   /// The greatest stretch of a triangle: the larger singular value of its deformation gradient.
   Stretch GreatestStretch() const;
@@ -86,9 +86,9 @@ class FabricEngine {
   std::vector<Vec3> position_, previous_;
   std::vector<Vec3> predicted_, next_;
   std::vector<VertexLoad> loads_;
-  std::vector<VertexLoad> windLoads_;   // per triangle, of each of its corners; none without wind
-  std::vector<std::int32_t> touched_;   // of CollideBall
-  std::vector<SetFold<double>> folds_;  // per hinge; none where none may set
+  std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
+  std::vector<std::int32_t> touched_;  // of CollideBall
+  std::vector<Fold> folds_;            // per hinge; none where none may set
   EngineCounts counts_;
 };
 

@@ -238,22 +238,25 @@ std::vector<Factors> FindFactors(const Scene& scene, const FabricModel& model) {
   return factors;
 }
 
+const ClothSettings& ClothOf(const Scene& scene, const FabricModel& model, const FabricHinge& hinge) {
+  return scene.cloths[Index(model.clothOf[Index(hinge.triangle[0])])];
+}
+
 /// Angles at which folds set: a yield curvature over the width that a hinge stands for, (A1 + A2) / |e|.
 std::vector<FoldYield<double>> FindYield(const Scene& scene, const FabricModel& model) {
   std::vector<FoldYield<double>> yield;
   const auto sets = [](const ClothSettings& c) { return c.foldYield > 0 && c.bendingLaw == BendingLaw::Hinges; };
   if (std::none_of(scene.cloths.begin(), scene.cloths.end(), sets)) return yield;
   yield.assign(model.hinges.size(), {.angle = std::numeric_limits<double>::infinity()});
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const ClothSettings& cloth = scene.cloths[c];
-    for (int h = model.firstHinge[c]; sets(cloth) && h < model.firstHinge[c + 1]; ++h) {
-      const FabricHinge& hinge = model.hinges[Index(h)];
-      const MaterialPoint from = CornerAt(model, hinge.triangle[0], hinge.vertex[0]),
-                          to = CornerAt(model, hinge.triangle[0], hinge.vertex[1]);
-      const double area = model.rest[Index(hinge.triangle[0])].area + model.rest[Index(hinge.triangle[1])].area;
-      const double length = std::hypot(to.u - from.u, to.v - from.v);
-      yield[Index(h)] = {.angle = cloth.foldYield * area / length, .hardening = cloth.foldHardening};
-    }
+  for (std::size_t h = 0; h < model.hinges.size(); ++h) {
+    const FabricHinge& hinge = model.hinges[h];
+    const ClothSettings& cloth = ClothOf(scene, model, hinge);
+    if (!sets(cloth)) continue;
+    const MaterialPoint from = CornerAt(model, hinge.triangle[0], hinge.vertex[0]),
+                        to = CornerAt(model, hinge.triangle[0], hinge.vertex[1]);
+    const double area = model.rest[Index(hinge.triangle[0])].area + model.rest[Index(hinge.triangle[1])].area;
+    const double length = std::hypot(to.u - from.u, to.v - from.v);
+    yield[h] = {.angle = cloth.foldYield * area / length, .hardening = cloth.foldHardening};
   }
   return yield;
 }
@@ -314,8 +317,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   for (const Factors& factor : factors) model.strength.push_back(factor.stretch);
   for (FabricHinge& hinge : model.hinges) {
     const auto x = [&](int k) { return From<double>(model.start[Index(hinge.vertex[k])]); };
-    const auto cloth = std::upper_bound(model.firstVertex.begin(), model.firstVertex.end(), hinge.vertex[0]) - 1;
-    const bool flat = scene.cloths[Index(cloth - model.firstVertex.begin())].restAngles == RestAngles::Flat;
+    const bool flat = ClothOf(scene, model, hinge).restAngles == RestAngles::Flat;
     hinge.restAngle = flat ? 0 : HingeAngle(x(0), x(1), x(2), x(3));
   }
   model.yield = FindYield(scene, model);

@@ -254,6 +254,10 @@ void Objective::Gradient(std::span<const Vec3> y, std::span<Vec3> gradient) {
 void Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix) {
   EvaluateTriangles(y, true);
   Gather(y, gradient);
+  const auto addToDiagonal = [&](int v, const Matrix3<double>& stiffness) {
+    Real* block = matrix.DiagonalBlock(v);
+    for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
+  };
   executor_.ForChunks(Chunks(model_.vertexCount), [&](int chunk) {
     const int begin = chunk * kRowsPerChunk, end = std::min(begin + kRowsPerChunk, model_.vertexCount);
     kernels_.assemble({.begin = begin,
@@ -267,17 +271,9 @@ void Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> grad
                        .transposed = transposed_.entry.data(),
                        .hessian = triangleHessian_.data(),
                        .blocks = matrix.Block(0)});
-    for (int v = begin; v < end; ++v) {
-      const Matrix3<double>& stiffness = step_.loads[Index(v)].stiffness;
-      Real* block = matrix.DiagonalBlock(v);
-      for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
-    }
+    for (int v = begin; v < end; ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);
   });
-  for (const FabricTether& tether : model_.tethers) {
-    const Matrix3<double> stiffness = Pull(tether, y).hessian;
-    Real* block = matrix.DiagonalBlock(tether.vertex);
-    for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
-  }
+  for (const FabricTether& tether : model_.tethers) addToDiagonal(tether.vertex, Pull(tether, y).hessian);
   matrix.Finish(executor_);
 }
 

@@ -37,7 +37,7 @@ class Objective {
   void TakeMaterials();
 
   /// Rest angles other than the model's, per hinge; none: the model's. The span must stay.
-  void SetFolds(std::span<const SetFold<double>> folds) { folds_ = folds; }
+  void SetFolds(std::span<const Fold> folds) { folds_ = folds; }
 
   /// Takes over the settings of a step; their spans must stay.
   void Begin(const StepSettings& step);
@@ -78,7 +78,7 @@ class Objective {
   const Executor& executor_;
   const Kernels& kernels_;
   StepSettings step_;
-  std::span<const SetFold<double>> folds_;
+  std::span<const Fold> folds_;
   Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:

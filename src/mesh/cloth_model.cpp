@@ -168,4 +168,12 @@ std::vector<Edge> EnabledSprings(const ClothModel& model, const ClothSettings& s
   return springs;
 }
 
+std::vector<double> LengthsOf(std::span<const Edge> springs, std::span<const Vec3> rest) {
+  std::vector<double> lengths;
+  lengths.reserve(springs.size());
+  for (const Edge& s : springs)
+    lengths.push_back(Length(rest[static_cast<std::size_t>(s.a)] - rest[static_cast<std::size_t>(s.b)]));
+  return lengths;
+}
+
 }  // namespace percale

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -67,5 +68,7 @@ bool Enabled(const ClothSettings& cloth, SpringKind kind);
 
 /// The springs of the enabled kinds in creation order: point by point, each to its other end.
 std::vector<Edge> EnabledSprings(const ClothModel& model, const ClothSettings& settings);
+/// How long each spring is between points at rest [m].
+std::vector<double> LengthsOf(std::span<const Edge> springs, std::span<const Vec3> rest);
 
 }  // namespace percale

@@ -136,9 +136,34 @@ void Mirror(RestMesh& mesh, std::int32_t t) {
   for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Z(t) + k].y = -mesh.material[3 * Z(t) + k].y;
 }
 
+/// Triangles that lie on the same side of an edge as their neighbour in the texture, though both have the edge at the
+/// same place there; `old` is the number of each in `cornerUv`.
+std::vector<std::int32_t> FindFolded(const Topology& topology, std::span<const Triangle> triangles,
+                                     std::span<const std::int32_t> old, std::span<const Vec2> cornerUv) {
+  const auto uvOf = [&](std::int32_t triangle, std::int32_t vertex) {
+    const Triangle& t = triangles[Z(triangle)];
+    return cornerUv[3 * Z(old[Z(triangle)]) + (t.a == vertex ? 0 : t.b == vertex ? 1 : 2)];
+  };
+  std::vector<std::int32_t> folded;
+  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    const auto& [t0, t1] = topology.edgeTriangles[e];
+    if (t0 < 0 || t1 < 0) continue;
+    const Edge& edge = topology.edges[e];
+    const Vec2 a = uvOf(t0, edge.a), b = uvOf(t0, edge.b);
+    if (!(a == uvOf(t1, edge.a) && b == uvOf(t1, edge.b))) continue;  // a seam
+    const auto side = [&](const Vec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); };
+    const auto& [apex0, apex1] = topology.edgeOpposite[e];
+    if (!(side(uvOf(t0, apex0)) * side(uvOf(t1, apex1)) > 0)) continue;
+    folded.push_back(MaterialArea(cornerUv, Z(old[Z(t0)])) < 0 ? old[Z(t0)] : old[Z(t1)]);
+  }
+  std::sort(folded.begin(), folded.end());
+  folded.erase(std::unique(folded.begin(), folded.end()), folded.end());
+  return folded;
+}
+
 }  // namespace
 
-MeshProblems FindMeshProblems(const RestMesh& mesh) {
+MeshProblems FindMeshProblems(const RestMesh& mesh, std::span<const Vec2> cornerUv) {
   assert(mesh.material.size() == 3 * mesh.triangles.size());
   MeshProblems problems;
   FindErrors(mesh, problems);
@@ -166,30 +191,8 @@ MeshProblems FindMeshProblems(const RestMesh& mesh) {
   for (const std::int32_t t : old) {
     if (MaterialArea(mesh.material, Z(t)) < 0) problems.mirrored.push_back(t);
   }
+  if (!cornerUv.empty()) problems.folded = FindFolded(topology, triangles, old, cornerUv);
   return problems;
-}
-
-std::vector<std::int32_t> FindFolded(const RestMesh& mesh, std::span<const Vec2> cornerUv) {
-  const Topology topology = BuildTopology(mesh.positions.size(), mesh.triangles);
-  const auto uvOf = [&](std::int32_t triangle, std::int32_t vertex) {
-    const Triangle& t = mesh.triangles[Z(triangle)];
-    return cornerUv[3 * Z(triangle) + (t.a == vertex ? 0 : t.b == vertex ? 1 : 2)];
-  };
-  std::vector<std::int32_t> folded;
-  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
-    const auto& [t0, t1] = topology.edgeTriangles[e];
-    const auto& [apex0, apex1] = topology.edgeOpposite[e];
-    if (t0 < 0 || t1 < 0 || apex0 == apex1) continue;
-    const Edge& edge = topology.edges[e];
-    const Vec2 a = uvOf(t0, edge.a), b = uvOf(t0, edge.b);
-    if (!(a == uvOf(t1, edge.a) && b == uvOf(t1, edge.b))) continue;  // a seam
-    const auto side = [&](const Vec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); };
-    if (!(side(uvOf(t0, apex0)) * side(uvOf(t1, apex1)) > 0)) continue;
-    folded.push_back(MaterialArea(cornerUv, Z(t0)) < 0 ? t0 : t1);
-  }
-  std::sort(folded.begin(), folded.end());
-  folded.erase(std::unique(folded.begin(), folded.end()), folded.end());
-  return folded;
 }
 
 std::vector<MeshProblem> DescribeMeshProblems(const MeshProblems& problems) {

@@ -33,7 +33,8 @@ struct MeshProblems {
   std::vector<std::int32_t> mirrored;  ///< Triangles that are clockwise in the fabric.
 
   // Warnings: the mesh can be simulated as it is.
-  std::vector<std::int32_t> folded;    ///< Triangles that a texture lays over their neighbour: see FindFolded.
+  std::vector<std::int32_t> folded;    ///< Triangles that the texture lays over a neighbour in their panel; of the two
+                                       ///< the one that is clockwise there.
   std::vector<Edge> nonManifold;       ///< Edges of more than two triangles, which will not resist folding.
   std::vector<std::int32_t> oneSided;  ///< The lowest triangle of each patch with one side, such as a Moebius strip.
 
@@ -43,14 +44,9 @@ struct MeshProblems {
   }
 };
 
-/// Looks for all of them. The warnings are looked for where there are no errors. Takes about a second for a million
-/// triangles.
-MeshProblems FindMeshProblems(const RestMesh& mesh);
-
-/// Triangles that lie on the same side of an edge as their neighbour in the texture, though both have the edge at the
-/// same place there: the panel is folded over. Of the two the one that is clockwise. `cornerUv` has three entries per
-/// triangle. What has other problems may be missing.
-std::vector<std::int32_t> FindFolded(const RestMesh& mesh, std::span<const Vec2> cornerUv);
+/// Looks for all of them. The warnings are looked for where there are no errors; `folded` only with the texture that
+/// the fabric was cut from, three coordinates per triangle. Takes about a second for a million triangles.
+MeshProblems FindMeshProblems(const RestMesh& mesh, std::span<const Vec2> cornerUv = {});
 
 /// One kind of problem in words.
 struct MeshProblem {

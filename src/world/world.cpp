@@ -66,11 +66,7 @@ void FindSprings(const ClothModel& model, const ClothSettings& settings, Engine 
                  std::vector<double>& lengths) {
   if (engine == Engine::Springs) {
     springs = EnabledSprings(model, settings);
-    lengths.clear();
-    for (const Edge& spring : springs) {
-      lengths.push_back(
-          Length(model.start[static_cast<std::size_t>(spring.a)] - model.start[static_cast<std::size_t>(spring.b)]));
-    }
+    lengths = LengthsOf(springs, model.start);
     return;
   }
   Topology topology = BuildTopology(model.start.size(), model.triangles);
@@ -81,6 +77,12 @@ void FindSprings(const ClothModel& model, const ClothSettings& settings, Engine 
     if (length == 0) length = std::hypot(to.x - from.x, to.y - from.y);
   }
   springs = std::move(topology.edges);
+}
+
+/// Of points that were at `previous` a step of `dt` [s] before; `velocities` may be the same as that.
+void ComputeVelocities(std::span<const Vec3> positions, std::span<const Vec3> previous, double dt,
+                       std::span<Vec3> velocities) {
+  for (std::size_t v = 0; v < positions.size(); ++v) velocities[v] = (positions[v] - previous[v]) / dt;
 }
 
 }  // namespace
@@ -96,7 +98,6 @@ struct World::Impl {
   void Configure(std::shared_ptr<const Scene> changed);
   bool AskForces();
   void ReadState();
-  void ComputeVelocities(Cloth& cloth);
   void FinishStep();
 
   struct Cloth {
@@ -173,7 +174,7 @@ bool World::Impl::AskForces() {
     stepPositions.resize(count);
     stepVelocities.resize(count);
     engine->readState(engineState.get(), cloth, stepPositions, stepVelocities);
-    for (std::size_t v = 0; v < count; ++v) stepVelocities[v] = (stepPositions[v] - stepVelocities[v]) / dt;
+    ComputeVelocities(stepPositions, stepVelocities, dt, stepVelocities);
     cloths[c].forces.assign(count, Vec3{});
     forces({cloth, report.time - dt, stepPositions, stepVelocities, cloths[c].forces});
     for (std::size_t v = 0; v < count; ++v) {
@@ -191,14 +192,7 @@ void World::Impl::ReadState() {
     Cloth& cloth = cloths[c];
     cloth.lastFrame.swap(cloth.positions);
     engine->readState(engineState.get(), static_cast<int>(c), cloth.positions, cloth.previous);
-    ComputeVelocities(cloth);
-  }
-}
-
-void World::Impl::ComputeVelocities(Cloth& cloth) {
-  const double dt = scene->TimeStep();
-  for (std::size_t v = 0; v < cloth.positions.size(); ++v) {
-    cloth.velocities[v] = (cloth.positions[v] - cloth.previous[v]) / dt;
+    ComputeVelocities(cloth.positions, cloth.previous, scene->TimeStep(), cloth.velocities);
   }
 }
 
@@ -391,7 +385,7 @@ void World::Restore(const WorldState& state) {
     cloth.positions = state.cloths[c].positions;
     cloth.previous = state.cloths[c].previous;
     w.engine->writeState(w.engineState.get(), static_cast<int>(c), state.cloths[c], state.report.time);
-    w.ComputeVelocities(cloth);
+    ComputeVelocities(cloth.positions, cloth.previous, w.scene->TimeStep(), cloth.velocities);
   }
   w.engine->takeCounts(w.engineState.get());
   w.report = state.report;

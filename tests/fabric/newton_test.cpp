@@ -11,6 +11,7 @@
 #include "mesh/rest_mesh.h"
 #include "percale/fabrics.h"
 #include "percale/world.h"
+#include "tests/fabric/cotton_scene.h"
 
 using namespace percale;
 using namespace percale::fabric;
@@ -21,11 +22,8 @@ constexpr double kStep = 1.0 / 60;
 
 /// A square metre of cloth that hangs by two corners.
 Scene HangingSheet(Fabric fabric, int side, BendingLaw bending = BendingLaw::Quadratic) {
-  Scene scene;
-  scene.simulation.engine = Engine::Fabric;
-  scene.simulation.framesPerSecond = 60;
-  scene.simulation.stepsPerFrame = 1;
-  ClothSettings& cloth = scene.cloths.emplace_back();
+  Scene scene = test::CottonScene();
+  ClothSettings& cloth = scene.cloths[0];
   SetFabric(cloth, fabric);
   cloth.numWidthPoints = cloth.numHeightPoints = side;
   cloth.bendingLaw = bending;
@@ -282,13 +280,9 @@ TEST_CASE("a step that can go no further says so") {
 }
 
 TEST_CASE("a chain of stiff links without bending falls like a chain, and does not stall") {
-  Scene scene;
-  scene.simulation.engine = Engine::Fabric;
-  scene.simulation.framesPerSecond = 60;
-  scene.simulation.stepsPerFrame = 1;
+  Scene scene = test::CottonScene();
   scene.wind.airDensity = 0;
-  ClothSettings& cloth = scene.cloths.emplace_back();
-  SetFabric(cloth, Fabric::Cotton);
+  ClothSettings& cloth = scene.cloths[0];
   cloth.width = 1, cloth.height = 0.01;
   cloth.numWidthPoints = 129, cloth.numHeightPoints = 2;
   cloth.stretchWarp = cloth.stretchWeft = 1e5, cloth.shear = 4e4;

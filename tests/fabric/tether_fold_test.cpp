@@ -8,22 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "percale/fabrics.h"
 #include "percale/parameters.h"
 #include "percale/world.h"
+#include "tests/fabric/cotton_scene.h"
 
 using namespace percale;
 
 namespace {
 
 Scene Sheet(int points, BendingLaw law = BendingLaw::Quadratic) {
-  Scene scene;
-  scene.simulation.engine = Engine::Fabric;
-  scene.simulation.framesPerSecond = 60;
-  scene.simulation.stepsPerFrame = 1;
+  Scene scene = test::CottonScene();
   scene.wind.airDensity = 0;
-  ClothSettings& cloth = scene.cloths.emplace_back();
-  SetFabric(cloth, Fabric::Cotton);
+  ClothSettings& cloth = scene.cloths[0];
   cloth.numWidthPoints = cloth.numHeightPoints = points;
   cloth.bendingLaw = law;
   return scene;

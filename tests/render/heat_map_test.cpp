@@ -48,9 +48,7 @@ struct Sheet {
   Image Paint(Painter& painter, const View& seen) const {
     ClothShape shape = cloth.Shape();
     shape.rest = rest;
-    std::vector<double> lengths;
-    for (const Edge& s : shape.springs)
-      lengths.push_back(Length(rest[static_cast<std::size_t>(s.a)] - rest[static_cast<std::size_t>(s.b)]));
+    const std::vector<double> lengths = LengthsOf(shape.springs, rest);
     shape.restLengths = lengths;
     shape.velocities = velocities;
     shape.pinned = pinned;
@@ -231,7 +229,7 @@ TEST_CASE("a rope is straight where it is taut, and else about as long as it is"
   const auto length = [&](Vec3 from) {
     positions[9] = from;
     Marks marks;
-    AddTethers(scene, std::span(&shape, 1), {0, -1, 0}, marks);
+    AddTethers(scene, std::span(&shape, 1), marks);
     REQUIRE(!marks.lines.empty());
     const auto at = [&](const Mark& mark) { return Vec3{mark.position[0], mark.position[1], mark.position[2]}; };
     CHECK(Length(at(marks.lines.front()) - from) < 1e-6);

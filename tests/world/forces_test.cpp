@@ -31,11 +31,9 @@ Scene Floating(Engine engine, int stepsPerFrame = 3) {
   return scene;
 }
 
-/// The masses of a cloth [N s^2/m], from what a force of 1 N does to each point's velocity in the first step.
-std::vector<double> Masses(const Scene& of) {
-  Scene scene = of;
-  scene.simulation.stepsPerFrame = 1;
-  World weighed(scene);
+/// The masses of a cloth's points [kg].
+std::vector<double> Masses(const Scene& scene) {
+  const World weighed(scene);
   const double area = scene.cloths[0].width * scene.cloths[0].height;
   const auto count = weighed.Cloth(0).positions().size();
   if (scene.simulation.engine == Engine::Springs)

@@ -86,9 +86,7 @@ TEST_CASE("the stretch of a sheet that is pulled evenly") {
   const std::vector<Edge> springs = EnabledSprings(model, settings);
   const auto positions = Shaped(model, [](Vec2 uv) { return Vec3{1.2 * uv.x, 3, 0.9 * uv.y}; });
   std::vector<double> greatest(positions.size()), least(positions.size()), ratios;
-  std::vector<double> lengths;
-  for (const Edge& s : springs)
-    lengths.push_back(Length(model.start[static_cast<std::size_t>(s.a)] - model.start[static_cast<std::size_t>(s.b)]));
+  const std::vector<double> lengths = LengthsOf(springs, model.start);
   MeasureStretch(positions, springs, lengths, greatest, least);
   for (std::size_t v = 0; v < positions.size(); ++v) {
     CHECK(greatest[v] == doctest::Approx(1.2));
