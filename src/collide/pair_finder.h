@@ -1,0 +1,47 @@
+#pragma once
+/// \file
+/// Finds what comes close to what while all vertices of a mesh move along straight lines.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "collide/contact_mesh.h"
+#include "core/executor.h"
+#include "percale/vec3.h"
+
+namespace percale {
+
+/// Four vertices: a vertex and the corners of a triangle, or the ends of one edge and of another.
+using VertexQuad = std::array<std::int32_t, 4>;
+
+/// From start to start + way, all vertices in common time.
+struct MeshMotion {
+  std::span<const Vec3> start;        ///< Per vertex [m].
+  std::span<const Vec3> way;          ///< Per vertex [m].
+  std::span<const std::uint8_t> cut;  ///< Per vertex: 1 where it may end anywhere between; or nothing: none may.
+};
+
+class PairFinder {
+ public:
+  /// The mesh must outlive it.
+  PairFinder(const ContactMesh& mesh, const Executor& executor);
+  ~PairFinder();
+
+  /// Lists all pairs of a vertex and a triangle, and of two edges, whose boxes come within reach[body] +
+  /// reach[other body] of each other, so all that come as close as that in distance; but none with a vertex in common,
+  /// none of two obstacles, and none of two cloths where `clothPairs` is false. Always in the same order. Allocates
+  /// only where there are more than ever before. `reach`: per body [m].
+  void Find(const MeshMotion& motion, std::span<const double> reach, bool clothPairs);
+
+  std::span<const VertexQuad> vertexTriangle() const;  ///< {vertex, a, b, c}
+  std::span<const VertexQuad> edgeEdge() const;        ///< {a, b, c, d}: edges ab and cd.
+  std::size_t MemoryBytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace percale
