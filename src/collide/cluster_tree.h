@@ -1,0 +1,56 @@
+#pragma once
+/// \file
+/// A mesh in clusters of neighbours, built once: leaves of a few triangles each, and a tree over them.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collide/contact_mesh.h"
+
+namespace percale {
+
+/// An item is a triangle, an edge without triangles or a vertex without edges. The items of a body are cut in two along
+/// the longest axis again and again; what is left are its leaves. Each vertex and each edge belongs to the first leaf
+/// that has an item with it.
+struct ClusterTree {
+  static constexpr int kLeafItems = 16;                 ///< At most.
+  static constexpr int kLeafVertices = 3 * kLeafItems;  ///< At most, of all its items.
+  static constexpr int kLeafEdges = 3 * kLeafItems;     ///< At most.
+  static constexpr int kFan = 8;                        ///< Children of a node.
+
+  int clothLeaves = 0;                      ///< Leaves from here on are those of obstacles.
+  std::vector<std::int32_t> body;           ///< Per leaf, ascending.
+  std::vector<std::int32_t> vertexFirst;    ///< Leaf l has the vertices at [vertexFirst[l], vertexFirst[l + 1]) of ...
+  std::vector<std::int32_t> vertices;       ///< ... these: first its own, then others of its triangles.
+  std::vector<std::int32_t> ownVertices;    ///< Per leaf, how many are its own.
+  std::vector<std::int32_t> edgeFirst;      ///< Likewise, of ...
+  std::vector<Edge> edges;                  ///< ... these, as the mesh has them.
+  std::vector<std::int32_t> triangleFirst;  ///< Likewise, of ...
+  std::vector<Triangle> triangles;          ///< ... these, as the mesh has them.
+  std::vector<std::int32_t> levelFirst;     ///< Nodes of all levels in one row: leaves first, then groups of kFan of
+                                            ///< the level before, up to one root; one more is where they end.
+
+  int leaves() const { return static_cast<int>(body.size()); }
+  int levels() const { return static_cast<int>(levelFirst.size()) - 1; }
+  int nodes() const { return levelFirst.back(); }
+  std::span<const std::int32_t> Vertices(int leaf) const { return Part(vertices, vertexFirst, leaf); }
+  std::span<const std::int32_t> OwnVertices(int leaf) const {
+    return Vertices(leaf).first(static_cast<std::size_t>(ownVertices[static_cast<std::size_t>(leaf)]));
+  }
+  std::span<const Edge> Edges(int leaf) const { return Part(edges, edgeFirst, leaf); }
+  std::span<const Triangle> Triangles(int leaf) const { return Part(triangles, triangleFirst, leaf); }
+  std::size_t MemoryBytes() const;
+
+ private:
+  template <class T>
+  static std::span<const T> Part(const std::vector<T>& all, const std::vector<std::int32_t>& first, int leaf) {
+    const std::int32_t begin = first[static_cast<std::size_t>(leaf)], end = first[static_cast<std::size_t>(leaf) + 1];
+    return {all.data() + begin, static_cast<std::size_t>(end - begin)};
+  }
+};
+
+/// Takes time in proportion to n log n.
+ClusterTree BuildClusterTree(const ContactMesh& mesh);
+
+}  // namespace percale
