@@ -131,17 +131,24 @@ void PlainTwin::MovePins() {
   const double time = time_;
   for (PointMass& point : points_) {
     if (!point.pinned) continue;
-    Vec3 offset;
+    Vec3 offset, turned = point.start;
     for (const PinMotion& motion : scene_.pinMotions) {
       if (motion.cloth != point.cloth) continue;
       bool concerned = motion.points.empty();
       for (const GridPoint& g : motion.points) concerned |= &At(point.cloth, g.i, g.j) == &point;
       if (!concerned) continue;
       const double s = std::clamp((time - motion.start) / (motion.end - motion.start), 0.0, 1.0);
-      offset += motion.displacement * (s * s * (3 - 2 * s));
+      const double share = motion.steady ? s : s * s * (3 - 2 * s);
+      offset += motion.displacement * share;
+      // Rodrigues' formula.
+      const Vec3 axis = UnitOr(motion.axis, {0, 1, 0}), arm = turned - motion.centre;
+      const double angle = motion.angle * share * (std::numbers::pi / 180);
+      if (angle != 0)
+        turned = motion.centre + arm * std::cos(angle) + Cross(axis, arm) * std::sin(angle) +
+                 axis * (Dot(axis, arm) * (1 - std::cos(angle)));
     }
     point.previous = point.position;
-    point.position = point.start + offset;
+    point.position = turned + offset;
   }
 }
 

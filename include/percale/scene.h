@@ -44,6 +44,9 @@ enum class BendingLaw { Quadratic, Hinges };
 /// The shape that BendingLaw::Hinges bends back to.
 enum class RestAngles { Flat, Start };
 
+/// What a collider is. In its own frame it lies around the origin, its axis along y.
+enum class ColliderShape { Sphere, Plane, Box, Capsule, Cylinder, Cone, Torus, Mesh };
+
 struct ClothSettings {
   Shape shape = Shape::Grid;
   double width = 1;                                   ///< Extent [m], > 0.
@@ -99,13 +102,31 @@ struct ClothSettings {
 struct SphereSettings {
   Vec3 origin;            ///< Centre [m].
   double radius = 0.2;    ///< [m], > 0.
-  double friction = 0.3;  ///< Share of the correction that is withheld, 0..1.
+  double friction = 0.3;  ///< Share of the correction that is withheld, 0..1. Engine::Fabric: Coulomb's coefficient.
 };
 
 struct PlaneSettings {
   Vec3 point;             ///< Any point of the plane [m].
   Vec3 normal{0, 1, 0};   ///< Not zero; need not have length 1.
-  double friction = 0.5;  ///< Share of the correction that is withheld, 0..1.
+  double friction = 0.5;  ///< Share of the correction that is withheld, 0..1. Engine::Fabric: Coulomb's coefficient.
+};
+
+/// Something solid that cloth does not enter. Engine::Fabric.
+struct ColliderSettings {
+  ColliderShape shape = ColliderShape::Sphere;
+  Vec3 position;             ///< Of its centre [m]; any point of a plane; of a mesh the origin of its file.
+  Vec3 rotation;             ///< Turns it about x, then y, then z, around its position [degree].
+  Vec3 size{0.4, 0.4, 0.4};  ///< Edges of a box [m], > 0 each.
+  double radius = 0.2;       ///< Of a sphere, capsule, cylinder, a cone's base, the ring of a torus [m], > 0.
+  double length = 0.4;       ///< Along y of a cylinder or cone, of a capsule between its balls' centres [m], > 0.
+  double tubeRadius = 0.05;  ///< Of the tube of a torus [m], > 0, < radius.
+  std::string mesh;          ///< File of a mesh; the path begins at the folder of the scene's file.
+  double meshScale = 1;      ///< Metres per unit of that file, > 0.
+  bool twoSided = false;     ///< Of an open mesh: cloth stays out from both sides, not only in front.
+  double friction = 0.3;     ///< Coulomb's coefficient, 0..10.
+  double thickness = 0;      ///< Cloth keeps so much farther off [m], >= 0.
+  Vec3 color{1, 1, 1};       ///< Times the look's base colour, 0..1 each.
+  std::shared_ptr<const LoadedMesh> loaded;  ///< That file, read, its triangles turned outwards: see LoadMeshes.
 };
 
 /// A part of one cloth whose material differs: its triangles with all corners in `group` and in `rectangle`. Several
@@ -128,14 +149,32 @@ struct Tether {
   double stiffness = 1e4;         ///< Force per way beyond the length [N/m], > 0.
 };
 
-/// Carries some pins of one cloth along a straight line: at rest before `start`, displaced by
-/// `displacement` from `end` on, smoothly in between. Several motions of a pin add up.
+/// Carries some pins of one cloth: at rest before `start`, displaced by `displacement` and turned by `angle` from `end`
+/// on, smoothly in between. Of several motions of a pin the displacements add up; the turns follow one another in
+/// their order, each about its centre, which the displacements carry along.
 struct PinMotion {
   int cloth = 0;                  ///< Index of the cloth in the scene.
   std::vector<GridPoint> points;  ///< Pinned points that move; none: all of the cloth's pins.
   double start = 0;               ///< [s]
   double end = 1;                 ///< [s], > start.
   Vec3 displacement;              ///< [m]
+  Vec3 axis{0, 1, 0};             ///< Not zero; need not have length 1.
+  double angle = 0;               ///< About the axis, counter-clockwise seen from its tip; more than a turn [degree].
+  Vec3 centre;                    ///< A point of the axis [m].
+  bool steady = false;            ///< At constant speed from start to end, not smoothly from rest to rest.
+};
+
+/// The same for a collider.
+struct ColliderMotion {
+  int collider = 0;       ///< Index among Scene::colliders.
+  double start = 0;       ///< [s]
+  double end = 1;         ///< [s], > start.
+  Vec3 displacement;      ///< [m]
+  Vec3 axis{0, 1, 0};     ///< Not zero; need not have length 1.
+  double angle = 0;       ///< About the axis, counter-clockwise seen from its tip; more than a turn [degree].
+  bool ownCentre = true;  ///< The axis runs through the collider's position; ignore `centre`.
+  Vec3 centre;            ///< A point of the axis [m].
+  bool steady = false;    ///< At constant speed from start to end, not smoothly from rest to rest.
 };
 
 /// Engine::Springs: a viscous wind after Provot 1995, section 3.2: each point feels
@@ -188,9 +227,11 @@ struct Scene {
   std::vector<ClothSettings> cloths;
   std::vector<SphereSettings> spheres;
   std::vector<PlaneSettings> planes;
+  std::vector<ColliderSettings> colliders;
   std::vector<Patch> patches;
   std::vector<Tether> tethers;
   std::vector<PinMotion> pinMotions;
+  std::vector<ColliderMotion> colliderMotions;
   WindSettings wind;
   CameraSettings camera;
   LookSettings look;

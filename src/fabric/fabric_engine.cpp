@@ -250,7 +250,7 @@ void FabricEngine::WriteState(int cloth, std::span<const Vec3> positions, std::s
   std::copy(positions.begin(), positions.end(), position_.begin() + first);
   std::copy(previous.begin(), previous.end(), previous_.begin() + first);
   std::copy(positions.begin(), positions.end(), predicted_.begin() + first);
-  pins_.WriteAnchors(Index(cloth), anchors, [&](int v) { return position_[Index(v)]; });
+  pins_.WriteAnchors(Index(cloth), anchors, time, [&](int v) { return position_[Index(v)]; });
   time_ = time;
 }
 

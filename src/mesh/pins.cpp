@@ -11,6 +11,7 @@ namespace percale {
 void Pins::Update(const Scene& scene, std::span<const int> firstPoint, double time,
                   const std::function<Vec3(int point)>& position) {
   const std::vector<Pin> old = std::exchange(pins_, {});
+  time_ = time;
   motions_.clear();
   first_.clear();
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
@@ -24,8 +25,10 @@ void Pins::Update(const Scene& scene, std::span<const int> firstPoint, double ti
         if (static_cast<std::size_t>(motion.cloth) != c) continue;
         const bool named = std::any_of(motion.points.begin(), motion.points.end(),
                                        [&](const GridPoint& g) { return VertexOf(scene.cloths[c], g) == vertex; });
-        if (named || motion.points.empty())
-          motions_.push_back({motion.cloth, {}, motion.start, motion.end, motion.displacement});
+        if (!named && !motion.points.empty()) continue;
+        motions_.push_back(motion);
+        motions_.back().points.clear();
+        motions_.back().axis = UnitOr(motion.axis, {0, 1, 0});
       }
       pin.motionCount = static_cast<int>(motions_.size()) - pin.firstMotion;
       const auto before =
@@ -34,7 +37,7 @@ void Pins::Update(const Scene& scene, std::span<const int> firstPoint, double ti
         pin.anchor = before->anchor;
         pin.target = pin.previousTarget = before->target;  // a pin that is no longer carried stands still
       } else {
-        pin.anchor = at - MotionOf(pin, time);
+        pin.anchor = CarriageOf(pin, time).Undo(at);
       }
       pins_.push_back(pin);
     }
@@ -43,21 +46,24 @@ void Pins::Update(const Scene& scene, std::span<const int> firstPoint, double ti
 }
 
 void Pins::Reset(const std::function<Vec3(int point)>& position) {
+  time_ = 0;
   for (Pin& pin : pins_) pin.anchor = pin.target = pin.previousTarget = position(pin.point);
 }
 
 bool Pins::MoveTo(double time) {
+  time_ = time;
   if (motions_.empty()) return false;
   for (Pin& pin : pins_) {
     pin.previousTarget = pin.target;
-    pin.target = pin.anchor + MotionOf(pin, time);
+    pin.target = CarriageOf(pin, time).Carry(pin.anchor);
   }
   return true;
 }
 
 void Pins::Shift(std::size_t index, const Vec3& way) {
   Pin& pin = pins_[index];
-  pin.anchor += way;
+  const Carriage carriage = CarriageOf(pin, time_);
+  pin.anchor += carriage.turns ? TransposedTimes(carriage.pose.rotation, way) : way;
   pin.target = pin.previousTarget = pin.target + way;
 }
 
@@ -72,9 +78,10 @@ void Pins::ReadAnchors(std::size_t cloth, std::vector<Vec3>& anchors) const {
   for (const Pin& pin : Of(cloth)) anchors.push_back(pin.anchor);
 }
 
-void Pins::WriteAnchors(std::size_t cloth, std::span<const Vec3> anchors,
+void Pins::WriteAnchors(std::size_t cloth, std::span<const Vec3> anchors, double time,
                         const std::function<Vec3(int point)>& position) {
   assert(anchors.size() == Count(cloth));
+  time_ = time;
   for (std::size_t k = 0; k < anchors.size(); ++k) {
     Pin& pin = pins_[first_[cloth] + k];
     pin.anchor = anchors[k];
@@ -82,15 +89,19 @@ void Pins::WriteAnchors(std::size_t cloth, std::span<const Vec3> anchors,
   }
 }
 
-/// How far its motions have carried a pin [m].
-Vec3 Pins::MotionOf(const Pin& pin, double time) const {
-  Vec3 offset;
+Pins::Carriage Pins::CarriageOf(const Pin& pin, double time) const {
+  Carriage carriage;
   for (int m = 0; m < pin.motionCount; ++m) {
     const PinMotion& motion = motions_[static_cast<std::size_t>(pin.firstMotion + m)];
-    const double s = std::clamp((time - motion.start) / (motion.end - motion.start), 0.0, 1.0);
-    offset += motion.displacement * (s * s * (3 - 2 * s));
+    const double share = MotionShare(motion.start, motion.end, motion.steady, time);
+    carriage.way += motion.displacement * share;
+    if (motion.angle == 0 || share == 0) continue;
+    const Matrix3<double> turn = RotationAbout(motion.axis, motion.angle * share);
+    carriage.turns = true;
+    carriage.pose.rotation = Product(turn, carriage.pose.rotation);
+    carriage.pose.position = motion.centre + Times(turn, carriage.pose.position - motion.centre);
   }
-  return offset;
+  return carriage;
 }
 
 }  // namespace percale

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "math/pose.h"
 #include "percale/interaction.h"
 #include "percale/scene.h"
 
@@ -44,15 +45,26 @@ class Pins {
 
   /// Where the pins of a cloth are held apart from their motions [m].
   void ReadAnchors(std::size_t cloth, std::vector<Vec3>& anchors) const;
-  /// The same, set; each is where `position` says. One anchor per pin of the cloth.
-  void WriteAnchors(std::size_t cloth, std::span<const Vec3> anchors, const std::function<Vec3(int point)>& position);
+  /// The same, set; each is where `position` says at `time` [s]. One anchor per pin of the cloth.
+  void WriteAnchors(std::size_t cloth, std::span<const Vec3> anchors, double time,
+                    const std::function<Vec3(int point)>& position);
 
  private:
-  Vec3 MotionOf(const Pin& pin, double time) const;
+  /// What motions do to a pin: they turn it, and displace it by a way [m].
+  struct Carriage {
+    bool turns = false;  // else the pose says nothing
+    Pose pose;
+    Vec3 way;
+
+    Vec3 Carry(const Vec3& anchor) const { return (turns ? ToWorld(pose, anchor) : anchor) + way; }
+    Vec3 Undo(const Vec3& target) const { return turns ? ToLocal(pose, target - way) : target - way; }
+  };
+  Carriage CarriageOf(const Pin& pin, double time) const;
 
   std::vector<Pin> pins_;
   std::vector<std::size_t> first_;  // per cloth, and the end
   std::vector<PinMotion> motions_;  // of all pins, each as often as it has pins
+  double time_ = 0;                 // at which the targets are [s]
 };
 
 /// What share of a grip's way a vertex goes along that is `offset` from its vertex in the rest shape [m]: less and

@@ -508,7 +508,7 @@ void SpringsEngine::WriteState(int cloth, std::span<const Vec3> positions, std::
     Put(positions_, p, positions[v]);
     Put(previous_, p, previous[v]);
   }
-  pins_.WriteAnchors(Index(cloth), anchors, [&](int point) { return Get(positions_, point); });
+  pins_.WriteAnchors(Index(cloth), anchors, time, [&](int point) { return Get(positions_, point); });
   time_ = time;
   ForgetBoxes();
 }

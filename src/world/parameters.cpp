@@ -17,6 +17,7 @@ constexpr double kFarthest = 1e6;    // [m]
 constexpr double kMostPoints = 1e6;  // along one side of a grid
 constexpr double kMostSteps = 1e5;   // frames per second, and steps per frame
 constexpr double kLatest = 1e6;      // [s]
+constexpr double kMostDegrees = 1e6;
 constexpr double kLargestInt = 2147483647;
 /// Messages leave out a bound beyond this until a value breaks it: nobody asks for less than 1e12 N/m.
 constexpr double kWorthNaming = 1e4;
@@ -27,6 +28,8 @@ constexpr std::string_view kHashFunctions[] = {"exact", "linear", "powers", "bru
 constexpr std::string_view kPlaneResponses[] = {"interpolate", "offset", "hold"};
 constexpr std::string_view kTangents[] = {"constant", "from_uv"};
 constexpr std::string_view kShapes[] = {"grid", "disc", "mesh"};
+constexpr std::string_view kColliderShapes[] = {"sphere",   "plane", "box",   "capsule",
+                                                "cylinder", "cone",  "torus", "mesh"};
 constexpr std::string_view kRestShapes[] = {"space", "texture"};
 constexpr std::string_view kOrientations[] = {"horizontal", "vertical"};
 constexpr std::string_view kFabricNames[] = {"cotton", "wool",  "wool_lycra", "polyester",
@@ -49,6 +52,9 @@ constexpr std::span<const std::string_view> NamesOf(Tangents) {
 }
 constexpr std::span<const std::string_view> NamesOf(Shape) {
   return kShapes;
+}
+constexpr std::span<const std::string_view> NamesOf(ColliderShape) {
+  return kColliderShapes;
 }
 constexpr std::span<const std::string_view> NamesOf(RestShape) {
   return kRestShapes;
@@ -206,6 +212,13 @@ void ChooseEngine(Scene& scene, std::size_t index, const Value& value) {
       cloth.density = ClothSettings().density;
   }
 }
+
+/// Who states a centre does not want the collider's own, unless they say so.
+void ChooseCentre(Scene& scene, std::size_t index, const Value& value) {
+  Set<&Scene::colliderMotions, &ColliderMotion::centre>(scene, index, value);
+  scene.colliderMotions[index].ownCentre = false;
+}
+
 template <auto Field>
 constexpr RowOf<&Scene::cloths, Field> Cloth{"cloth"};
 template <auto Field>
@@ -213,11 +226,15 @@ constexpr RowOf<&Scene::spheres, Field> Sphere{"sphere"};
 template <auto Field>
 constexpr RowOf<&Scene::planes, Field> Plane{"plane"};
 template <auto Field>
+constexpr RowOf<&Scene::colliders, Field> Collider{"collider"};
+template <auto Field>
 constexpr RowOf<&Scene::patches, Field> PatchOf{"patch"};
 template <auto Field>
 constexpr RowOf<&Scene::tethers, Field> TetherOf{"tether"};
 template <auto Field>
 constexpr RowOf<&Scene::pinMotions, Field> Motion{"pin_motion"};
+template <auto Field>
+constexpr RowOf<&Scene::colliderMotions, Field> Turn{"collider_motion"};
 template <auto Field>
 constexpr RowOf<&Scene::wind, Field> Wind{"wind"};
 template <auto Field>
@@ -232,6 +249,8 @@ std::vector<Parameter> MakeTable() {
   constexpr Effect kRebuild = Effect::Rebuild;
   constexpr Engine kSprings = Engine::Springs, kFabric = Engine::Fabric;
   using C = ClothSettings;
+  using O = ColliderSettings;
+  using M = ColliderMotion;
   using S = SimulationSettings;
   return {
     Cloth<&C::shape>({.name = "shape", .label = "Shape", .effect = kRebuild, .engine = kFabric,
@@ -365,7 +384,7 @@ std::vector<Parameter> MakeTable() {
       .minExclusive = true, .required = true,
       .typicalMin = 0.01, .typicalMax = 1, .help = "Radius of the sphere."}),
     Sphere<&SphereSettings::friction>({.name = "friction", .label = "Friction", .min = 0, .max = 1, .required = true,
-      .typicalMin = 0, .typicalMax = 1, .help = "0: cloth slides off; 1: it stays where it touched."}),
+      .typicalMin = 0, .typicalMax = 1, .help = "0: cloth slides off; 1: it stays where it touched. With engine fabric: Coulomb's coefficient."}),
 
     Plane<&PlaneSettings::point>({.name = "point", .label = "Point", .unit = "m", .min = -kFarthest, .max = kFarthest,
       .required = true,
@@ -374,7 +393,40 @@ std::vector<Parameter> MakeTable() {
       .required = true,
       .typicalMin = -1, .typicalMax = 1, .help = "Direction across the plane, of any length but 0."}),
     Plane<&PlaneSettings::friction>({.name = "friction", .label = "Friction", .min = 0, .max = 1, .required = true,
-      .typicalMin = 0, .typicalMax = 1, .help = "0: cloth slides; 1: it stays where it touched."}),
+      .typicalMin = 0, .typicalMax = 1, .help = "0: cloth slides; 1: it stays where it touched. With engine fabric: Coulomb's coefficient."}),
+
+    Collider<&O::shape>({.name = "shape", .label = "Shape", .effect = kRebuild,
+      .help = "Of `radius`: sphere, capsule, cylinder, cone, torus; box of `size`; an endless plane, up its y; mesh from the file `mesh`."}),
+    Collider<&O::position>({.name = "position", .label = "Position", .unit = "m", .min = -kFarthest, .max = kFarthest,
+      .typicalMin = -2, .typicalMax = 2,
+      .help = "Of its centre; any point of a plane; of a mesh the origin of its file."}),
+    Collider<&O::rotation>({.name = "rotation", .label = "Rotation", .unit = "degree", .min = -360, .max = 360,
+      .typicalMin = -180, .typicalMax = 180, .help = "Turns it about x, then y, then z, around its position."}),
+    Collider<&O::size>({.name = "size", .label = "Size", .unit = "m", .min = 0, .max = kFarthest, .minExclusive = true,
+      .typicalMin = 0.01, .typicalMax = 2, .help = "Edges of a box along x, y, z before it is turned."}),
+    Collider<&O::radius>({.name = "radius", .label = "Radius", .unit = "m", .min = 0, .max = kFarthest,
+      .minExclusive = true, .typicalMin = 0.01, .typicalMax = 1,
+      .help = "Of a sphere, a capsule, a cylinder, a cone's base, and of the ring of a torus to the middle of its tube."}),
+    Collider<&O::length>({.name = "length", .label = "Length", .unit = "m", .min = 0, .max = kFarthest,
+      .minExclusive = true, .typicalMin = 0.01, .typicalMax = 2,
+      .help = "Of a cylinder or cone along its y, of a capsule between the centres of its caps."}),
+    Collider<&O::tubeRadius>({.name = "tube_radius", .label = "Tube's radius", .unit = "m", .min = 0, .max = kFarthest,
+      .minExclusive = true, .typicalMin = 0.01, .typicalMax = 0.5,
+      .help = "Of the tube of a torus, less than its radius; the ring lies around its y."}),
+    Collider<&O::mesh>({.name = "mesh", .label = "Mesh", .effect = kRebuild,
+      .help = "File of a mesh, .obj or .ply; the path begins at the folder of the scene's file."}),
+    Collider<&O::meshScale>({.name = "mesh_scale", .label = "Mesh scale", .unit = "m", .min = 0, .max = 1e6,
+      .minExclusive = true, .typicalMin = 0.001, .typicalMax = 10, .logarithmic = true, .effect = kRebuild,
+      .help = "Length of one unit of the mesh's file; 0.01 where it is in centimetres."}),
+    Collider<&O::twoSided>({.name = "two_sided", .label = "Two-sided",
+      .help = "Of an open mesh: cloth stays on the side where it is; false: in front, from where the triangles run counter-clockwise."}),
+    Collider<&O::friction>({.name = "friction", .label = "Friction", .min = 0, .max = 10,
+      .typicalMin = 0, .typicalMax = 1, .help = "Coulomb's coefficient: ice 0.02, wood 0.3, rubber 1."}),
+    Collider<&O::thickness>({.name = "thickness", .label = "Thickness", .unit = "m", .min = 0, .max = kFarthest,
+      .typicalMin = 0, .typicalMax = 0.02, .help = "Cloth keeps so much farther off."}),
+    Collider<&O::color>({.name = "color", .label = "Colour", .min = 0, .max = 1,
+      .typicalMin = 0, .typicalMax = 1, .effect = Effect::View,
+      .help = "Red, green, blue, times the base colour of the look."}),
 
     PatchOf<&Patch::cloth>({.name = "cloth", .label = "Cloth", .min = 0, .max = kMostPoints,
       .help = "Which cloth, counted from 0."}),
@@ -416,9 +468,41 @@ std::vector<Parameter> MakeTable() {
       .minExclusive = true, .required = true,
       .typicalMin = 0, .typicalMax = 10, .help = "When the motion is over, later than its start."}),
     Motion<&PinMotion::displacement>({.name = "displacement", .label = "Displacement", .unit = "m", .min = -kFarthest,
-      .max = kFarthest, .required = true,
+      .max = kFarthest,
       .typicalMin = -2, .typicalMax = 2,
       .help = "How far the points are carried in all; several motions of a point add up."}),
+    Motion<&PinMotion::axis>({.name = "axis", .label = "Axis", .min = -kFarthest, .max = kFarthest,
+      .typicalMin = -1, .typicalMax = 1, .help = "Direction about which the points are turned, of any length but 0."}),
+    Motion<&PinMotion::angle>({.name = "angle", .label = "Angle", .unit = "degree", .min = -kMostDegrees,
+      .max = kMostDegrees, .typicalMin = -720, .typicalMax = 720,
+      .help = "By which the points are turned in all, counter-clockwise seen from the axis' tip; 720 is two turns."}),
+    Motion<&PinMotion::centre>({.name = "centre", .label = "Centre", .unit = "m", .min = -kFarthest, .max = kFarthest,
+      .typicalMin = -2, .typicalMax = 2, .help = "A point of the axis; displacements carry it along."}),
+    Motion<&PinMotion::steady>({.name = "steady", .label = "Steady",
+      .help = "At constant speed from start to end, not smoothly from rest to rest."}),
+
+    Turn<&M::collider>({.name = "collider", .label = "Collider", .min = 0, .max = kMostPoints,
+      .help = "Which collider, counted from 0."}),
+    Turn<&M::start>({.name = "start", .label = "Start", .unit = "s", .min = 0, .max = kLatest,
+      .typicalMin = 0, .typicalMax = 10, .help = "When the motion begins."}),
+    Turn<&M::end>({.name = "end", .label = "End", .unit = "s", .min = 0, .max = kLatest,
+      .minExclusive = true, .required = true,
+      .typicalMin = 0, .typicalMax = 10, .help = "When the motion is over, later than its start."}),
+    Turn<&M::displacement>({.name = "displacement", .label = "Displacement", .unit = "m", .min = -kFarthest,
+      .max = kFarthest, .typicalMin = -2, .typicalMax = 2,
+      .help = "How far it is carried in all; several motions of a collider add up."}),
+    Turn<&M::axis>({.name = "axis", .label = "Axis", .min = -kFarthest, .max = kFarthest,
+      .typicalMin = -1, .typicalMax = 1, .help = "Direction about which it is turned, of any length but 0."}),
+    Turn<&M::angle>({.name = "angle", .label = "Angle", .unit = "degree", .min = -kMostDegrees,
+      .max = kMostDegrees, .typicalMin = -720, .typicalMax = 720,
+      .help = "By which it is turned in all, counter-clockwise seen from the axis' tip; 720 is two turns."}),
+    Turn<&M::ownCentre>({.name = "own_centre", .label = "Own centre",
+      .help = "The axis runs through the collider's position; false as soon as `centre` is stated."}),
+    WithChoice(Turn<&M::centre>({.name = "centre", .label = "Centre", .unit = "m", .min = -kFarthest,
+      .max = kFarthest, .typicalMin = -2, .typicalMax = 2, .help = "A point of the axis; displacements carry it along."}),
+      &ChooseCentre),
+    Turn<&M::steady>({.name = "steady", .label = "Steady",
+      .help = "At constant speed from start to end, not smoothly from rest to rest."}),
 
     Wind<&WindSettings::velocity>({.name = "velocity", .label = "Velocity", .unit = "m/s", .min = -1e4, .max = 1e4,
       .typicalMin = -20, .typicalMax = 20, .help = "Of the air; a breeze is 5, a storm 25."}),
@@ -518,9 +602,11 @@ constexpr ParameterGroup kGroups[] = {
     Group<&Scene::cloths>("cloth", true, "A sheet of cloth."),
     Group<&Scene::spheres>("sphere", false, "A ball that cloth rests on."),
     Group<&Scene::planes>("plane", false, "An endless flat wall or floor."),
+    Group<&Scene::colliders>("collider", false, "Something solid of any shape, which cloth does not enter."),
     Group<&Scene::patches>("patch", false, "A part of a cloth whose material differs from the rest by factors."),
     Group<&Scene::tethers>("tether", false, "Ropes from points of a cloth to a place, slack up to their length."),
-    Group<&Scene::pinMotions>("pin_motion", false, "Carries pinned points of a cloth along a straight line."),
+    Group<&Scene::pinMotions>("pin_motion", false, "Carries pinned points of a cloth, and turns them."),
+    Group<&Scene::colliderMotions>("collider_motion", false, "Carries a collider, and turns it."),
     Group<&Scene::wind>("wind", false, "Moving air that pushes on the cloth."),
     Group<&Scene::simulation>("simulation", false, "How time is cut into steps, and which rules act."),
     Group<&Scene::camera>("camera", false, "Where the picture is taken from."),
@@ -718,12 +804,15 @@ std::vector<Difference> Differences(const Scene& a, const Scene& b) {
 std::optional<Effect> EffectOf(const Scene& before, const Scene& after) {
   std::optional<Effect> greatest;
   if (before.planesFirst != after.planesFirst) greatest = Effect::Live;
-  for (std::size_t c = 0; c < std::min(before.cloths.size(), after.cloths.size()); ++c) {
-    // The file may have changed.
-    const ClothSettings &a = before.cloths[c], &b = after.cloths[c];
-    const bool meshes = a.shape == Shape::Mesh && b.shape == Shape::Mesh && a.loaded && b.loaded;
-    if (meshes && a.loaded != b.loaded && *a.loaded != *b.loaded) greatest = Effect::Rebuild;
-  }
+  const auto compareMeshes = [&](const auto& a, const auto& b, auto mesh) {
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+      // The file may have changed.
+      const bool both = a[i].shape == mesh && b[i].shape == mesh && a[i].loaded && b[i].loaded;
+      if (both && a[i].loaded != b[i].loaded && *a[i].loaded != *b[i].loaded) greatest = Effect::Rebuild;
+    }
+  };
+  compareMeshes(before.cloths, after.cloths, Shape::Mesh);
+  compareMeshes(before.colliders, after.colliders, ColliderShape::Mesh);
   for (const Difference& difference : Differences(before, after)) {
     greatest = std::max(greatest, std::optional(difference.parameter->effect));
   }
