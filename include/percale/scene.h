@@ -86,11 +86,13 @@ struct ClothSettings {
   double bendWeft = 1.2e-5;        ///< The same along the weft [N m], >= 0.
   double stretchDamping = 0.002;   ///< Of strain rates, as a time: stress = stiffness (strain + this * rate) [s], >= 0.
   double bendDamping = 0.002;      ///< The same for curvature [s], >= 0.
-  double foldYield = 0;      ///< BendingLaw::Hinges: curvature beyond which a fold sets [1/m], >= 0; 0: none does.
-  double foldHardening = 0;  ///< Growth of the angle that a fold bears by the angle that has set, >= 0.
-  double strainLimit = 0.2;  ///< Strain from which the yarns lock: the stress grows with its square, > 0.
-  double warpAngle = 0;      ///< Of the warp, turned from u towards v [degree].
-  double pressure = 0;       ///< Inside of a closed cloth above the outside [Pa].
+  double foldYield = 0;        ///< BendingLaw::Hinges: curvature beyond which a fold sets [1/m], >= 0; 0: none does.
+  double foldHardening = 0;    ///< Growth of the angle that a fold bears by the angle that has set, >= 0.
+  double strainLimit = 0.2;    ///< Strain from which the yarns lock: the stress grows with its square, > 0.
+  double warpAngle = 0;        ///< Of the warp, turned from u towards v [degree].
+  double pressure = 0;         ///< Inside of a closed cloth above the outside [Pa].
+  double contactDistance = 0;  ///< Cloth pushes back what comes nearer [m], >= 0; 0: 0.3 of its mean edge.
+  double friction = 0.3;       ///< Of cloth on cloth, Coulomb's coefficient, >= 0.
   MembraneLaw membraneLaw = MembraneLaw::StVenantKirchhoff;
   BendingLaw bendingLaw = BendingLaw::Quadratic;
   RestAngles restAngles = RestAngles::Flat;

@@ -15,6 +15,10 @@ namespace {
 constexpr double kBound = 1e6;
 /// Drag coefficient of a sheet along the wind (Hoerner 1965, "Fluid-dynamic drag", chapter 2).
 constexpr double kSkinDrag = 0.01;
+/// Where more than this share of all vertices had to stop on their way, the step goes on with what stopped them known,
+/// for so many more iterations.
+constexpr double kMostCut = 0.005;
+constexpr int kMoreIterations = 2;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -27,10 +31,15 @@ bool InBounds(const Vec3& x) {
 }  // namespace
 
 FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes, const Executor& executor)
-    : executor_(executor), scene_(scene), model_(BuildModel(scene, meshes)), solver_(model_, executor) {
+    : executor_(executor),
+      scene_(scene),
+      model_(BuildModel(scene, meshes)),
+      solver_(model_, executor),
+      contact_(scene, model_, executor) {
+  solver_.objective().SetContacts(&contact_.contacts());
   const std::size_t count = Index(model_.vertexCount);
   free_.assign(count, 1);
-  position_ = previous_ = predicted_ = next_ = model_.start;
+  position_ = previous_ = predicted_ = next_ = begin_ = model_.start;
   loads_.resize(count);
   SetUp();
 }
@@ -38,6 +47,7 @@ FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes,
 void FabricEngine::Configure(const Scene& scene) {
   scene_ = scene;
   TakeMaterials(scene, model_);
+  contact_.Configure(scene);
   SetUp();
 }
 
@@ -81,6 +91,7 @@ void FabricEngine::UpdatePins() {
 void FabricEngine::Reset() {
   position_ = previous_ = predicted_ = model_.start;
   pins_.Reset([&](int v) { return model_.start[Index(v)]; });
+  contact_.Clear();
   time_ = 0;
   folds_.clear();
   StartFolds();
@@ -89,6 +100,7 @@ void FabricEngine::Reset() {
 void FabricEngine::MoveColliders(double time) {
   time_ = time;
   pins_.MoveTo(time);
+  contact_.MoveColliders(scene_, time);
 }
 
 bool FabricEngine::ApplyForces(double time, std::span<const Gust> gusts, std::span<const Handle> handles) {
@@ -170,32 +182,49 @@ void FabricEngine::Hold(std::span<const Handle> handles) {
 void FabricEngine::Solve() {
   // Inertia may lead into much strain: then the better start is where the cloth is.
   ForRange(executor_, position_.size(), [&](int v) {
-    next_[Index(v)] = position_[Index(v)];
+    begin_[Index(v)] = next_[Index(v)] = position_[Index(v)];
     previous_[Index(v)] = position_[Index(v)] + (position_[Index(v)] - previous_[Index(v)]);
   });
   std::vector<Vec3>& ahead = previous_;
   for (const Pin& pin : pins_.All()) {
     next_[Index(pin.point)] = ahead[Index(pin.point)] = predicted_[Index(pin.point)] = pin.target;
   }
+  contact_.FindPlanes(begin_, position_, ahead, free_, model_.mass, h_);
   Objective& objective = solver_.objective();
-  objective.Begin({.h = h_, .start = position_, .predicted = predicted_, .loads = loads_, .free = free_});
+  objective.Begin({.h = h_, .start = begin_, .predicted = predicted_, .loads = loads_, .free = free_});
   const double here = objective.Energy(next_);
-  double energy = objective.Energy(ahead);
-  if (energy < here)
-    std::swap(ahead, next_);
-  else
-    energy = objective.Energy(next_);
+  if (objective.Energy(ahead) < here) std::swap(ahead, next_);
+  Minimise(scene_.simulation.newtonIterations);
+  previous_ = begin_;
+}
+
+/// Goes on from next_.
+void FabricEngine::Minimise(int iterations) {
   const SimulationSettings& settings = scene_.simulation;
-  const NewtonResult result = solver_.Solve(next_, energy,
-                                            {.maxIterations = settings.newtonIterations,
-                                             .maxLinearIterations = settings.linearIterations,
-                                             .tolerance = settings.tolerance});
+  const NewtonResult result = solver_.Solve(
+      next_, solver_.objective().Energy(next_),
+      {.maxIterations = iterations, .maxLinearIterations = settings.linearIterations, .tolerance = settings.tolerance});
   counts_.newtonIterations += result.iterations;
   counts_.linearIterations += result.linearIterations;
   counts_.residual = std::max(counts_.residual, result.residual);
   counts_.converged = counts_.converged && result.converged;
-  std::swap(previous_, position_);
+}
+
+void FabricEngine::Move() {
+  const SafeMoveReport first = contact_.Move(position_, next_);
+  if (static_cast<double>(first.cut) > kMostCut * static_cast<double>(position_.size())) {
+    // What was met on the way has its plane now.
+    position_ = next_;
+    contact_.FindPlanes(begin_, position_, position_, free_, model_.mass, h_);
+    Minimise(kMoreIterations);
+    contact_.Move(position_, next_);
+  }
   std::swap(position_, next_);
+  contact_.End(position_);
+  for (const Contact& contact : contact_.contacts().all()) {
+    if (!contact.active) continue;
+    ++(contact.key.kind == ContactKey::Kind::Shape ? counts_.colliderContacts : counts_.selfContacts);
+  }
   YieldFolds();
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/executor.h"
+#include "fabric/contact_step.h"
 #include "fabric/energy/air.h"
 #include "fabric/fabric_model.h"
 #include "fabric/newton.h"
@@ -39,6 +40,8 @@ class FabricEngine {
   void AddForces(int cloth, std::span<const Vec3> forces);
   /// Where all forces balance.
   void Solve();
+  /// Goes there, as far as nothing passes through anything.
+  void Move();
   /// Pushes cloth and ball apart by their masses, momentum kept.
   void CollideBall(Ball& ball);
 
@@ -68,6 +71,7 @@ class FabricEngine {
 
  private:
   void SetUp();
+  void Minimise(int iterations);
   void UpdatePins();
   void StartFolds();
   void YieldFolds();
@@ -79,12 +83,13 @@ class FabricEngine {
   Scene scene_;
   FabricModel model_;
   NewtonSolver solver_;
+  ContactStep contact_;
   double h_ = 0;     // of a step [s]
   double time_ = 0;  // of the last step [s]
   Pins pins_;
   std::vector<std::uint8_t> free_;  // per vertex
   std::vector<Vec3> position_, previous_;
-  std::vector<Vec3> predicted_, next_;
+  std::vector<Vec3> predicted_, next_, begin_;
   std::vector<VertexLoad> loads_;
   std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
   std::vector<std::int32_t> touched_;  // of CollideBall

@@ -18,6 +18,8 @@ constexpr double kRounding = 1e-6;
 constexpr double kLinearTolerance = 0.01;
 /// The share that the last iteration of a linear system may gain; it makes r'z fall about as far.
 constexpr double kLinearGain = 0.04;
+/// The same in contact, where the sides that push each other are most of r'z, and what they carry along is least.
+constexpr double kTouchingTolerance = 1e-3, kTouchingGain = 0.01;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -63,17 +65,23 @@ NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonS
   NewtonResult result;
   double first = 0;
   while (result.iterations < settings.maxIterations) {
-    objective_.GradientAndTangent(y, gradient_, matrix_);
-    if (result.iterations == 0) multigrid_.Refill(matrix_, executor_);
+    const bool touched = matrix_.extra().any;
+    energy += objective_.GradientAndTangent(y, gradient_, matrix_);
+    const bool touches = matrix_.extra().any;
+    if (result.iterations == 0)
+      multigrid_.Refill(matrix_, executor_);
+    else if (touched || touches)
+      multigrid_.RefillExtra(matrix_, executor_);
     ForRange(executor_, y.size(), [&](int v) {
       Real* r = &right_[3 * Index(v)];
       const Vec3& g = gradient_[Index(v)];
       r[0] = static_cast<Real>(-g.x), r[1] = static_cast<Real>(-g.y), r[2] = static_cast<Real>(-g.z);
     });
-    const SolveResult linear = conjugateGradient_.Solve(
-        matrix_, multigrid_, right_.data(), direction_.data(),
-        {.maxIterations = settings.maxLinearIterations, .tolerance = kLinearTolerance, .leastGain = kLinearGain},
-        executor_);
+    const SolveResult linear = conjugateGradient_.Solve(matrix_, multigrid_, right_.data(), direction_.data(),
+                                                        {.maxIterations = settings.maxLinearIterations,
+                                                         .tolerance = touches ? kTouchingTolerance : kLinearTolerance,
+                                                         .leastGain = touches ? kTouchingGain : kLinearGain},
+                                                        executor_);
     result.linearIterations += linear.iterations;
     const auto [slope, square] = MeasureDirection();
     const double alpha = slope < 0 ? SearchLine(y, energy, slope) : 0;

@@ -120,6 +120,7 @@ double Objective::Energy(std::span<const Vec3> y) {
     energy -= model_.pressure[Index(c)] * volume;
   }
   for (const FabricTether& tether : model_.tethers) energy += Pull(tether, y).energy;
+  if (contacts_) energy += contacts_->Energy(y);
   return energy;
 }
 
@@ -251,7 +252,13 @@ void Objective::Gradient(std::span<const Vec3> y, std::span<Vec3> gradient) {
   Gather(y, gradient);
 }
 
-void Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix) {
+double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix) {
+  double change = 0;
+  if (contacts_) {
+    const double before = contacts_->Energy(y);
+    change = contacts_->Update(y) - before;
+    matrix.SetExtra(contacts_->Blocks(), executor_);
+  }
   EvaluateTriangles(y, true);
   Gather(y, gradient);
   const auto addToDiagonal = [&](int v, const Matrix3<double>& stiffness) {
@@ -275,6 +282,7 @@ void Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> grad
   });
   for (const FabricTether& tether : model_.tethers) addToDiagonal(tether.vertex, Pull(tether, y).hessian);
   matrix.Finish(executor_);
+  return change;
 }
 
 /// What all terms come to at each vertex.
@@ -314,6 +322,7 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient) {
     gradient[Index(v)] = sum;
   });
   for (const FabricTether& tether : model_.tethers) gradient[Index(tether.vertex)] += ToVec3(Pull(tether, y).gradient);
+  if (contacts_) contacts_->AddGradient(y, gradient);
 }
 
 }  // namespace percale::fabric

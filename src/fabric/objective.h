@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/executor.h"
+#include "fabric/contacts.h"
 #include "fabric/energy/point_energy.h"
 #include "fabric/fabric_model.h"
 #include "fabric/kernels.h"
@@ -39,6 +40,9 @@ class Objective {
   /// Rest angles other than the model's, per hinge; none: the model's. The span must stay.
   void SetFolds(std::span<const Fold> folds) { folds_ = folds; }
 
+  /// Contacts from now on, or none.
+  void SetContacts(Contacts* contacts) { contacts_ = contacts; }
+
   /// Takes over the settings of a step; their spans must stay.
   void Begin(const StepSettings& step);
 
@@ -47,8 +51,9 @@ class Objective {
   /// Its derivative [N]; zero at pins.
   void Gradient(std::span<const Vec3> y, std::span<Vec3> gradient);
   /// The same where Energy was asked for last, and the blocks of a second derivative with eigenvalues bounded from
-  /// below as solver.md says.
-  void GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix);
+  /// below as solver.md says. Decides anew which contacts are active and how friction acts: returns by how much E(y)
+  /// changes with that [J].
+  double GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix);
 
   /// Of membrane and bending alone [J].
   double ElasticEnergy(std::span<const Vec3> y);
@@ -79,6 +84,7 @@ class Objective {
   const Kernels& kernels_;
   StepSettings step_;
   std::span<const Fold> folds_;
+  Contacts* contacts_ = nullptr;
   Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:

@@ -77,6 +77,7 @@ constexpr EngineTable FabricTable() {
     return Self<FabricEngine>(e).ApplyForces(time, gusts, handles);
   };
   table.solve = [](void* e) { Self<FabricEngine>(e).Solve(); };
+  table.selfCollide = [](void* e) { Self<FabricEngine>(e).Move(); };
   table.readFolds = [](const void* e, int cloth, std::vector<Fold>& folds) {
     Self<FabricEngine>(e).ReadFolds(cloth, folds);
   };

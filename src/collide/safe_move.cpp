@@ -1,0 +1,153 @@
+#include "collide/safe_move.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace percale {
+namespace {
+
+constexpr int kPairsPerChunk = 1024;
+/// Sweeps from which on what fails goes half as far, and no farther at all.
+constexpr int kHalveFrom = 10, kStopFrom = 25;
+/// Searches from which on every vertex counts as cut, so that no more is needed.
+constexpr int kMostSearches = 3;
+/// Cloth is in contact with itself below this share of the distance that the pair has in the flat mesh.
+constexpr double kOwnShare = 0.35;
+
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+Corners<double> Gather(std::span<const Vec3> x, const VertexQuad& quad) {
+  Corners<double> corners;
+  for (std::size_t k = 0; k < 4; ++k) corners[k] = From<double>(x[Index(quad[k])]);
+  return corners;
+}
+
+constexpr PairKind kKinds[2] = {PairKind::VertexTriangle, PairKind::EdgeEdge};
+
+}  // namespace
+
+double FloorOf(double gap, double distance) {
+  return std::min(0.999 * gap, std::max(std::min(0.2 * gap, 0.25 * distance), 0.05 * distance));
+}
+
+SafeMove::SafeMove(const ContactMesh& mesh, const Executor& executor)
+    : mesh_(mesh), executor_(executor), finder_(mesh, executor) {
+  for (std::vector<std::uint8_t>* flags : {&cut_, &changed_, &next_}) flags->resize(Index(mesh.vertices()));
+}
+
+void SafeMove::Clear() {
+  for (Pairs& pairs : pairs_) pairs.list.clear();
+}
+
+double SafeMove::DistanceOf(PairKind kind, const VertexQuad& quad, const ContactDistances& distances) const {
+  const std::int32_t one = mesh_.body[Index(quad[0])], other = mesh_.body[Index(quad[3])];
+  const double distance = distances.half[Index(one)] + distances.half[Index(other)];
+  if (one != other) return distance;
+  const Corners<double> place = Gather(mesh_.place, quad);
+  // Most pairs lie far apart in the mesh, and that is seen at once.
+  const Vector3<double> way = place[0] - place[3];
+  const Vector3<double> p = place[1] - place[0], q = place[2] - place[3];
+  const double reach = distance / kOwnShare + std::sqrt(Dot(p, p)) + std::sqrt(Dot(q, q));
+  if (Dot(way, way) > 4 * reach * reach) return distance;
+  return std::min(distance, kOwnShare * std::sqrt(ClosestOf(kind, place).squared));
+}
+
+template <class Body>
+void SafeMove::ForPairs(Body&& body) {
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    const int count = static_cast<int>(pairs_[kind].list.size());
+    executor_.ForChunks((count + kPairsPerChunk - 1) / kPairsPerChunk, [&](int chunk) {
+      const int end = std::min(count, (chunk + 1) * kPairsPerChunk);
+      for (int p = chunk * kPairsPerChunk; p < end; ++p)
+        body(kKinds[kind], pairs_[kind].list[Index(p)], pairs_[kind].share[Index(p)]);
+    });
+  }
+}
+
+/// All pairs that might meet, and how they are at the start.
+void SafeMove::Search(const Ways& ways, const ContactDistances& distances) {
+  finder_.Find({.start = ways.start, .way = ways.way, .cut = cut_}, distances.half, distances.clothPairs);
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    const std::span<const VertexQuad> found = kind == 0 ? finder_.vertexTriangle() : finder_.edgeEdge();
+    pairs_[kind].list.resize(found.size());
+    pairs_[kind].share.resize(found.size());
+    for (std::size_t p = 0; p < found.size(); ++p) pairs_[kind].list[p].vertex = found[p];
+  }
+  ForPairs([&](PairKind kind, NearPair& pair, double& share) {
+    pair.distance = DistanceOf(kind, pair.vertex, distances);
+    pair.start = StateOf(kind, Gather(ways.start, pair.vertex));
+    share = 1;
+  });
+  std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});
+}
+
+/// Tests the pairs of vertices that changed, and shortens the ways of those that fail. Returns how many do.
+std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
+  ForPairs([&](PairKind kind, NearPair& pair, double& share) {
+    share = 1;
+    const VertexQuad& v = pair.vertex;
+    if (!(changed_[Index(v[0])] | changed_[Index(v[1])] | changed_[Index(v[2])] | changed_[Index(v[3])])) return;
+    if (!(pair.start.gap > 0)) return;
+    Corners<double> way;
+    for (std::size_t k = 0; k < 4; ++k) way[k] = From<double>(ways.way[Index(v[k])]) * ways.share[Index(v[k])];
+    share = ShareApart(kind, Gather(ways.start, v), way, pair.start, FloorOf(pair.start.gap, pair.distance));
+  });
+  std::int64_t failed = 0;
+  std::fill(next_.begin(), next_.end(), std::uint8_t{0});
+  for (const Pairs& pairs : pairs_) {
+    for (std::size_t p = 0; p < pairs.list.size(); ++p) {
+      double share = pairs.share[p];
+      if (share >= 1) continue;
+      ++failed;
+      if (sweep >= kStopFrom)
+        share = 0;
+      else if (sweep >= kHalveFrom)
+        share *= 0.5;
+      for (const std::int32_t v : pairs.list[p].vertex) {
+        const Vec3& way = ways.way[Index(v)];
+        if (Dot(way, way) == 0) continue;
+        ways.share[Index(v)] *= share;
+        next_[Index(v)] = 1;
+      }
+    }
+  }
+  std::swap(changed_, next_);
+  return failed;
+}
+
+SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances,
+                              std::span<double> share) {
+  SafeMoveReport report;
+  const Ways ways{start, way, share};
+  std::fill(share.begin(), share.end(), 1.0);
+  std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
+  Search(ways, distances);
+  ++report.detections;
+  for (int sweep = 0; Cut(ways, sweep) > 0; ++sweep) {
+    // Whoever is cut may meet what was not listed.
+    bool more = false;
+    for (std::size_t v = 0; v < cut_.size(); ++v) {
+      if (!changed_[v] || cut_[v]) continue;
+      cut_[v] = 1;
+      more = true;
+    }
+    if (!more) continue;
+    if (report.detections + 1 >= kMostSearches) std::fill(cut_.begin(), cut_.end(), std::uint8_t{1});
+    Search(ways, distances);
+    ++report.detections;
+  }
+  for (std::size_t v = 0; v < share.size(); ++v) {
+    const double wanted = Dot(way[v], way[v]), lost = 1 - share[v];
+    report.wanted += wanted;
+    report.lost += wanted * lost * lost;
+    report.cut += lost > 0 ? 1 : 0;
+  }
+  for (const Pairs& pairs : pairs_) {
+    for (const NearPair& pair : pairs.list) report.violated += pair.start.gap > 0 ? 0 : 1;
+  }
+  return report;
+}
+
+}  // namespace percale

@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// Moves all vertices of a mesh along straight lines as far as they can go without anything passing through anything.
+/// docs/contact.md has the argument why nothing can.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collide/contact_mesh.h"
+#include "collide/pair_finder.h"
+#include "collide/proximity.h"
+#include "core/executor.h"
+
+namespace percale {
+
+/// How near things may come to each other.
+struct ContactDistances {
+  std::vector<double> half;  ///< Per body: two are in contact when nearer than the sum of theirs [m].
+  bool clothPairs = true;    ///< Whether cloth feels cloth.
+};
+
+/// Two things near the way of the last move.
+struct NearPair {
+  VertexQuad vertex;
+  double distance = 0;  ///< Below which they are in contact [m].
+  PairState start;      ///< As the move began.
+};
+
+struct SafeMoveReport {
+  int detections = 0;         ///< Searches for pairs.
+  std::int64_t cut = 0;       ///< Vertices that did not go all their way.
+  std::int64_t violated = 0;  ///< Pairs that met at the start: they are let be.
+  double lost = 0;            ///< Sum of the squared ways that were cut off [m^2].
+  double wanted = 0;          ///< Sum of the squared ways [m^2].
+};
+
+class SafeMove {
+ public:
+  /// Both must outlive it.
+  SafeMove(const ContactMesh& mesh, const Executor& executor);
+
+  /// Shortens ways from `start` so that no pair meets: writes the share of its way that each vertex goes. A vertex
+  /// without a way stays. Allocates only where there are more pairs than ever before.
+  SafeMoveReport Move(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances,
+                      std::span<double> share);
+
+  /// All that came near in the last move, and more.
+  std::span<const NearPair> vertexTriangle() const { return pairs_[0].list; }
+  std::span<const NearPair> edgeEdge() const { return pairs_[1].list; }
+  /// Forgets them.
+  void Clear();
+
+  /// Below which two vertices of a pair count as in contact: the sum of their bodies' halves, less where they are as
+  /// near in the mesh itself.
+  double DistanceOf(PairKind kind, const VertexQuad& quad, const ContactDistances& distances) const;
+
+ private:
+  struct Pairs {
+    std::vector<NearPair> list;
+    std::vector<double> share;  // per pair, of the last test
+  };
+  struct Ways {
+    std::span<const Vec3> start, way;
+    std::span<double> share;
+  };
+
+  void Search(const Ways& ways, const ContactDistances& distances);
+  template <class Body>
+  void ForPairs(Body&& body);
+  std::int64_t Cut(const Ways& ways, int sweep);
+
+  const ContactMesh& mesh_;
+  const Executor& executor_;
+  PairFinder finder_;
+  Pairs pairs_[2];                                  // by kind
+  std::vector<std::uint8_t> cut_, changed_, next_;  // per vertex
+};
+
+/// How near a pair may come that starts at a distance `gap` and is in contact below `distance` [m]: so far that it can
+/// get there again and again and never meets, and not so far that fast cloth stops in the air.
+double FloorOf(double gap, double distance);
+
+}  // namespace percale

@@ -1,0 +1,285 @@
+#include "fabric/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace percale::fabric {
+namespace {
+
+constexpr int kPairsPerChunk = 1024;
+/// Pairs that are not in contact, but nearer than so many times its distance, have a plane as well: they may be soon.
+constexpr double kSoon = 2;
+/// How stiff a contact is that begins, over the inertia of its sides, mass over h^2: stiff enough for what lies on
+/// cloth, and not so stiff that vertices that touch move as one, which solvers take long to see.
+constexpr double kStiffness = 20;
+/// The gap that a plane's parabola is fitted at is within these shares of the distance of contact.
+constexpr double kLeastFit = 0.05, kMostFit = 0.5;
+/// Edges count in full where they cross so far from their ends, over their length.
+constexpr double kFullCrossing = 0.1;
+/// A contact is as stiff as to stop what comes near within this share of its distance.
+constexpr double kStop = 0.3;
+
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+Vector3<double> Tangential(const Vector3<double>& v, const Vector3<double>& normal) {
+  return v - normal * Dot(v, normal);
+}
+
+/// Sum of weights times positions, of cloth.
+Vector3<double> Sum(const Contact& c, std::span<const Vec3> y) {
+  Vector3<double> sum;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (c.vertex[k] >= 0) sum += From<double>(y[Index(c.vertex[k])]) * c.weight[k];
+  }
+  return sum;
+}
+
+}  // namespace
+
+Contacts::Contacts(const ContactMesh& mesh, const Executor& executor)
+    : mesh_(mesh), executor_(executor), triangles_(Index(mesh.vertices())), border_(Index(mesh.vertices())) {
+  std::vector<int> surplus(triangles_.size());  // of edges over triangles
+  for (const Edge& edge : mesh.edges) ++surplus[Index(edge.a)], ++surplus[Index(edge.b)];
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::int32_t v : {triangle.a, triangle.b, triangle.c}) {
+      --surplus[Index(v)];
+      if (triangles_[Index(v)] < 255) ++triangles_[Index(v)];
+    }
+  }
+  for (std::size_t v = 0; v < surplus.size(); ++v) border_[v] = surplus[v] > 0 ? 1 : 0;
+}
+
+/// Points where things touch are often those of several pairs: a vertex that is near another is near all triangles
+/// there, and so are all edges of both. Of such pairs each counts for its share: what is nearest to a side of a
+/// triangle, which two have, for half, to a corner for one of those that meet there; and edges where they cross, not
+/// where an end of one is nearest, which is a vertex's to mind.
+double Contacts::ShareOf(PairKind kind, const VertexQuad& vertex, const std::array<double, 4>& weight) const {
+  const auto lone = [&](std::size_t a, std::size_t b) {
+    return triangles_[Index(vertex[a])] == 0 && triangles_[Index(vertex[b])] == 0;
+  };
+  if (kind == PairKind::EdgeEdge) {
+    const double inside =
+        std::min({std::abs(weight[0]), std::abs(weight[1]), std::abs(weight[2]), std::abs(weight[3])});
+    if (lone(0, 1) || lone(2, 3)) return 1;
+    return std::min(1.0, inside / kFullCrossing);
+  }
+  int corners = 0, borders = 0;
+  std::int32_t last = -1;
+  for (std::size_t k = 1; k < 4; ++k) {
+    if (weight[k] == 0) continue;
+    ++corners;
+    borders += border_[Index(vertex[k])];
+    last = vertex[k];
+  }
+  if (corners == 1) return 1.0 / triangles_[Index(last)];
+  return corners == 2 && borders < 2 ? 0.5 : 1;
+}
+
+void Contacts::Begin(const Step& step) {
+  step_ = step;
+  contacts_.clear();
+  first_ = true;
+}
+
+void Contacts::Clear() {
+  contacts_.clear();
+  memory_.Clear(0);
+}
+
+/// What resists a change of its gap by inertia alone [N/m]; 0 where all is pinned.
+double Contacts::Inertia(const Contact& c) const {
+  double compliance = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::int32_t v = c.vertex[k];
+    if (v >= 0 && step_.free[Index(v)]) compliance += c.weight[k] * c.weight[k] / step_.mass[Index(v)];
+  }
+  return compliance > 0 ? 1 / (compliance * step_.h * step_.h) : 0;
+}
+
+/// The force is k (r - d) down to half the distance of contact r, and from there on grows as 1 / d^2; the parabola has
+/// that force and its slope at the gap. `approach`: how far beyond contact inertia alone would lead [m].
+void Contacts::Fit(double gap, double distance, double approach, Contact& c) const {
+  const double inertia = Inertia(c);
+  const double k = inertia * std::max(kStiffness, approach / (kStop * distance));
+  const double fit = std::clamp(gap, kLeastFit * distance, kMostFit * distance);
+  if (fit == kMostFit * distance) {
+    c.stiffness = k;
+    c.distance = distance;
+    return;
+  }
+  const double share = 0.5 * distance / fit;
+  const double force = 0.5 * k * distance * share * share;
+  c.stiffness = 2 * force / fit;
+  c.distance = 1.5 * fit;
+}
+
+double Contacts::FrictionOf(const ContactSurface& a, const ContactSurface& b) const {
+  if (a.rulesFriction) return a.friction;
+  if (b.rulesFriction) return b.friction;
+  return 0.5 * (a.friction + b.friction);
+}
+
+/// Goes on with the friction of the step before.
+void Contacts::Remember(Contact& contact) {
+  const Stick* stick = memory_.Find(contact.key);
+  if (stick == nullptr) return;
+  contact.slideFrom -= Tangential(stick->slide, contact.normal);
+  contact.force = stick->force;
+}
+
+void Contacts::AddPairs(PairKind kind, std::span<const NearPair> pairs) {
+  found_.resize(pairs.size());
+  kept_.resize(pairs.size());
+  const int count = static_cast<int>(pairs.size());
+  executor_.ForChunks((count + kPairsPerChunk - 1) / kPairsPerChunk, [&](int chunk) {
+    for (int p = chunk * kPairsPerChunk; p < std::min(count, (chunk + 1) * kPairsPerChunk); ++p) {
+      const NearPair& pair = pairs[Index(p)];
+      kept_[Index(p)] = 0;
+      Corners<double> x, way;
+      for (std::size_t k = 0; k < 4; ++k) {
+        x[k] = From<double>(step_.start[Index(pair.vertex[k])]);
+        way[k] = From<double>(step_.way[Index(pair.vertex[k])]);
+      }
+      const PairState now = StateOf(kind, x);
+      if (!(now.gap > 0)) continue;
+      PairState plane = now;
+      const double share = ShareApart(kind, x, way, now, FloorOf(now.gap, pair.distance));
+      if (share < 1) {
+        plane = StateOf(kind, After(x, way, share));
+        if (!(plane.gap > 0)) plane = now;
+      } else if (now.gap >= kSoon * pair.distance) {
+        continue;
+      }
+      const double counts = ShareOf(kind, pair.vertex, plane.weight);
+      if (counts == 0) continue;
+      kept_[Index(p)] = 1;
+      Contact& c = found_[Index(p)];
+      c = {};
+      c.key = {kind == PairKind::VertexTriangle ? ContactKey::Kind::VertexTriangle : ContactKey::Kind::EdgeEdge,
+               pair.vertex};
+      c.normal = plane.normal;
+      Vector3<double> obstacle;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::int32_t v = pair.vertex[k];
+        c.weight[k] = plane.weight[k];
+        c.vertex[k] = v < mesh_.clothVertices ? v : -1;
+        if (c.vertex[k] < 0) obstacle += (x[k] + way[k]) * plane.weight[k];
+        c.slideFrom += From<double>(step_.begin[Index(v)]) * plane.weight[k];
+      }
+      c.offset = Dot(c.normal, obstacle);
+      c.slideFrom -= obstacle;
+      const ContactSurface& a = step_.surfaces[Index(mesh_.body[Index(pair.vertex[0])])];
+      const ContactSurface& b = step_.surfaces[Index(mesh_.body[Index(pair.vertex[3])])];
+      double ahead = 0;
+      for (std::size_t k = 0; k < 4; ++k) ahead += c.weight[k] * Dot(c.normal, x[k] + way[k]);
+      Fit(now.gap, pair.distance, pair.distance - ahead, c);
+      c.stiffness *= counts;
+      if (!(c.stiffness > 0)) kept_[Index(p)] = 0;
+      c.friction = FrictionOf(a, b);
+      Remember(c);
+    }
+  });
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (kept_[p]) contacts_.push_back(found_[p]);
+  }
+}
+
+void Contacts::AddPlane(const ContactKey& key, std::int32_t vertex, double gap, double distance,
+                        const Vector3<double>& normal, const Vector3<double>& point, const Vector3<double>& pointBefore,
+                        const ContactSurface& surface) {
+  Contact& c = contacts_.emplace_back();
+  c.key = key;
+  c.vertex = {vertex, -1, -1, -1};
+  c.weight = {1, 0, 0, 0};
+  c.normal = normal;
+  c.offset = -Dot(normal, point);
+  c.slideFrom = From<double>(step_.begin[Index(vertex)]) + point - pointBefore;
+  const ContactSurface& own = step_.surfaces[Index(mesh_.body[Index(vertex)])];
+  const Vec3 ahead = step_.start[Index(vertex)] + step_.way[Index(vertex)];
+  Fit(gap, distance, distance - Dot(normal, From<double>(ahead) - point), c);
+  c.friction = FrictionOf(own, surface);
+  Remember(c);
+}
+
+double Contacts::Energy(std::span<const Vec3> y) const {
+  double energy = 0;
+  for (const Contact& c : contacts_) {
+    if (!c.seen) continue;
+    const Vector3<double> sum = Sum(c, y);
+    const double depth = c.distance - Dot(c.normal, sum) - c.offset;
+    if (depth > 0 || c.held) energy += 0.5 * c.stiffness * depth * depth;
+    const Vector3<double> slide = Tangential(sum - c.slideFrom, c.normal);
+    energy += 0.5 * c.drag * Dot(slide, slide);
+  }
+  return energy;
+}
+
+double Contacts::Update(std::span<const Vec3> y) {
+  for (Contact& c : contacts_) {
+    const Vector3<double> sum = Sum(c, y);
+    const double depth = c.distance - Dot(c.normal, sum) - c.offset;
+    c.held = first_ && c.force > 0;
+    c.active = depth > 0 || c.held;
+    c.seen = (!first_ && c.seen) || c.active;
+    // What presses is what pressed a step ago: where a contact begins, the first guess of it is far too great.
+    if (!first_) c.force = c.active ? c.stiffness * depth : 0;
+    const Vector3<double> slide = Tangential(sum - c.slideFrom, c.normal);
+    const double length = std::sqrt(Dot(slide, slide)), most = c.friction * c.force;
+    c.drag = !c.active ? 0 : most < c.stiffness * length ? most / length : most > 0 ? c.stiffness : 0;
+  }
+  first_ = false;
+  return Energy(y);
+}
+
+void Contacts::AddGradient(std::span<const Vec3> y, std::span<Vec3> gradient) const {
+  for (const Contact& c : contacts_) {
+    if (!c.active) continue;
+    const Vector3<double> sum = Sum(c, y);
+    const double depth = c.distance - Dot(c.normal, sum) - c.offset;
+    Vector3<double> pull = Tangential(sum - c.slideFrom, c.normal) * c.drag;
+    if (depth > 0 || c.held) pull -= c.normal * (c.stiffness * depth);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::int32_t v = c.vertex[k];
+      if (v >= 0 && step_.free[Index(v)]) gradient[Index(v)] += ToVec3(pull * c.weight[k]);
+    }
+  }
+}
+
+std::span<const ExtraBlock> Contacts::Blocks() {
+  blocks_.clear();
+  for (const Contact& c : contacts_) {
+    if (!c.active) continue;
+    Matrix3<double> whole = Outer(c.normal, c.normal) * (c.stiffness - c.drag) + Diagonal(c.drag);
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i; j < 4; ++j) {
+        const double weight = c.weight[i] * c.weight[j];
+        if (c.vertex[i] < 0 || c.vertex[j] < 0 || weight == 0) continue;
+        ExtraBlock& block = blocks_.emplace_back();
+        block.row = c.vertex[i];
+        block.column = c.vertex[j];
+        for (std::size_t k = 0; k < 9; ++k) block.block[k] = static_cast<Real>(whole.m[k] * weight);  // symmetric
+      }
+    }
+  }
+  return blocks_;
+}
+
+void Contacts::End(std::span<const Vec3> y) {
+  nextMemory_.Clear(contacts_.size());
+  for (Contact& c : contacts_) {
+    const Vector3<double> sum = Sum(c, y);
+    const double depth = c.distance - Dot(c.normal, sum) - c.offset;
+    if (!(depth > 0)) continue;
+    Stick stick;
+    stick.force = c.stiffness * depth;
+    stick.slide = Tangential(sum - c.slideFrom, c.normal);
+    const double length = std::sqrt(Dot(stick.slide, stick.slide)), most = c.friction * stick.force;
+    if (c.stiffness * length > most) stick.slide = stick.slide * (most / (c.stiffness * length));
+    nextMemory_.Put(c.key, stick);
+  }
+  std::swap(memory_, nextMemory_);
+}
+
+}  // namespace percale::fabric

@@ -1,0 +1,104 @@
+#pragma once
+/// \file
+/// Contact and friction in the potential of one step. Each contact is a plane, found before the step and kept through
+/// it: the gap between its two sides is linear in the positions, and costs energy where it is small. docs/contact.md
+/// says what follows from that and why nothing passes through anything nevertheless.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collide/safe_move.h"
+#include "fabric/contact_memory.h"
+#include "fabric/system_matrix.h"
+#include "math/vector3.h"
+#include "percale/vec3.h"
+
+namespace percale::fabric {
+
+/// What the surface of a body is like.
+struct ContactSurface {
+  double friction = 0;         ///< Coulomb's coefficient.
+  bool rulesFriction = false;  ///< Whether its coefficient counts alone; else that of two is their mean.
+};
+
+/// One plane between two sides.
+struct Contact {
+  ContactKey key;                        ///< What touches.
+  std::array<std::int32_t, 4> vertex{};  ///< Of cloth; -1: none.
+  std::array<double, 4> weight{};        ///< gap = normal · (sum of weights times positions) + offset
+  Vector3<double> normal;                ///< A unit vector.
+  double offset = 0;                     ///< [m]
+  double stiffness = 0;                  ///< [N/m]
+  double distance = 0;                   ///< Gap below which the sides push each other [m].
+  double friction = 0;                   ///< Coulomb's coefficient.
+  Vector3<double> slideFrom;  ///< slide = what is tangential of sum of weights times positions - slideFrom [m]
+  // As of the last Update:
+  bool active = true;
+  bool held = false;  ///< Whether it pulls as well, as in a step's first iteration what pressed at the end of the last.
+  bool seen = true;   ///< Whether it was active in any Update of the step.
+  double force = 0;   ///< With which the sides push each other [N].
+  double drag = 0;    ///< Force over slide of friction, one of a spring or less [N/m].
+};
+
+class Contacts {
+ public:
+  /// Both must outlive it.
+  Contacts(const ContactMesh& mesh, const Executor& executor);
+
+  /// All spans but the last over the vertices of the mesh.
+  struct Step {
+    std::span<const Vec3> begin;               ///< Where the step begins: what slides, slides from there [m].
+    std::span<const Vec3> start;               ///< Where all is now [m].
+    std::span<const Vec3> way;                 ///< Of obstacles to the end of the step, of cloth where it is led [m].
+    std::span<const std::uint8_t> free;        ///< Per vertex of cloth: 0 for pins.
+    std::span<const double> mass;              ///< Per vertex of cloth [kg].
+    double h = 0;                              ///< Length of the step [s].
+    std::span<const ContactSurface> surfaces;  ///< Per body.
+  };
+  /// Forgets all planes; those of the step before are remembered for friction.
+  void Begin(const Step& step);
+  /// Planes between what is near, or meets on the way. The spans of the step must stay until all are added.
+  void AddPairs(PairKind kind, std::span<const NearPair> pairs);
+  /// A plane through `point`, which is where the surface will be at the end of the step and was at `pointBefore` at
+  /// its start, off which a vertex of cloth keeps. `gap`: at the start [m].
+  void AddPlane(const ContactKey& key, std::int32_t vertex, double gap, double distance, const Vector3<double>& normal,
+                const Vector3<double>& point, const Vector3<double>& pointBefore, const ContactSurface& surface);
+
+  /// What the planes cost at y [J]: of those that were active at the last Update.
+  double Energy(std::span<const Vec3> y) const;
+  /// Takes as active what costs energy at y, and friction as the forces there have it; in the first call of a step, as
+  /// those at the end of the last step. Returns the energy.
+  double Update(std::span<const Vec3> y);
+  /// Of what is active.
+  void AddGradient(std::span<const Vec3> y, std::span<Vec3> gradient) const;
+  std::span<const ExtraBlock> Blocks();
+  /// Remembers what sticks where the step has ended.
+  void End(std::span<const Vec3> y);
+  /// Forgets what stuck.
+  void Clear();
+
+  std::span<const Contact> all() const { return contacts_; }
+
+ private:
+  double ShareOf(PairKind kind, const VertexQuad& vertex, const std::array<double, 4>& weight) const;
+  double Inertia(const Contact& contact) const;
+  void Fit(double gap, double distance, double approach, Contact& contact) const;
+  double FrictionOf(const ContactSurface& a, const ContactSurface& b) const;
+  void Remember(Contact& contact);
+
+  const ContactMesh& mesh_;
+  const Executor& executor_;
+  std::vector<std::uint8_t> triangles_;  // per vertex: how many it has
+  std::vector<std::uint8_t> border_;     // per vertex: 1 at a border
+  Step step_;
+  std::vector<Contact> contacts_;
+  std::vector<std::uint8_t> kept_;  // per pair while they are added
+  std::vector<Contact> found_;
+  std::vector<ExtraBlock> blocks_;
+  ContactMemory memory_, nextMemory_;
+  bool first_ = true;  // no Update yet in this step
+};
+
+}  // namespace percale::fabric
