@@ -27,14 +27,16 @@ class EightBoxes {
   /// A bit for each of them that is near.
   unsigned Near(OneBox box) const {
 #if defined(__AVX512VL__)
-    __mmask8 apart = 0;
+    // Signs of differences are as good as comparisons, and cheaper than masks.
+    __m256i apart = _mm256_setzero_si256();
     for (int i = 0; i < 3; ++i) {
-      const __mmask8 above = _mm256_cmp_ps_mask(low_[i], All(box.high, i), _CMP_GT_OQ);
-      const __mmask8 below = _mm256_cmp_ps_mask(high_[i], All(box.low, i), _CMP_LT_OQ);
-      apart = _kor_mask8(apart, _mm256_mask_cmp_ps_mask(above, low_[i + 3], All(box.high, i + 3), _CMP_GT_OQ));
-      apart = _kor_mask8(apart, _mm256_mask_cmp_ps_mask(below, high_[i + 3], All(box.low, i + 3), _CMP_LT_OQ));
+      constexpr int kOrBothOthers = 0xf8;
+      apart = _mm256_ternarylogic_epi32(apart, Less(All(box.high, i), low_[i]), Less(All(box.high, i + 3), low_[i + 3]),
+                                        kOrBothOthers);
+      apart = _mm256_ternarylogic_epi32(apart, Less(high_[i], All(box.low, i)), Less(high_[i + 3], All(box.low, i + 3)),
+                                        kOrBothOthers);
     }
-    return _cvtmask8_u32(apart) ^ 0xff;
+    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(apart))) ^ 0xff;
 #else
     __m256 apart = _mm256_setzero_ps();
     for (int i = 0; i < 3; ++i) {
@@ -50,6 +52,10 @@ class EightBoxes {
  private:
   static __m256 All(const float* from, int i) {
     return _mm256_set1_ps(from[i * kLanes]);
+  }
+  /// The sign bit.
+  static __m256i Less(__m256 a, __m256 b) {
+    return _mm256_castps_si256(_mm256_sub_ps(a, b));
   }
   __m256 low_[6], high_[6];
 #elif defined(__SSE2__)

@@ -90,6 +90,16 @@ struct NearItems {
   std::uint8_t triangleA[kMostTriangles + kLanes], vertexB[kMostTriangles + kLanes];
 };
 
+/// Pairs that are to be written as four vertices each.
+struct WriteArgs {
+  int count;
+  const std::uint8_t* numberA;
+  const std::uint8_t* numberB;
+  const std::int32_t* a;  ///< The vertices of items of a, one item after another.
+  const std::int32_t* b;
+  std::int32_t* to;  ///< Out: room for all.
+};
+
 struct Kernels {
   const char* name;
   void (*vertexRows)(const RowArgs&);
@@ -101,6 +111,10 @@ struct Kernels {
   void (*search)(const SearchArgs&);
   /// Finds the items that are near each other; in a leaf itself (`same`) pairs of edges once.
   void (*nearItems)(const LeafItems& a, const LeafItems& b, bool same, NearItems& out);
+  /// Writes pairs of a vertex and a triangle, without those with a vertex in common; returns how many.
+  int (*writeVertexTriangle)(const WriteArgs&);
+  /// The same of two edges.
+  int (*writeEdgeEdge)(const WriteArgs&);
 };
 
 /// All that the processor can run, the plain ones first and the fastest last.

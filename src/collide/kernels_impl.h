@@ -22,6 +22,7 @@ using Floats = Pack<float, 4, Level>;
 #include "collide/kernel_near.h"
 #include "collide/kernel_pairs.h"
 #include "collide/kernel_search.h"
+#include "collide/kernel_write.h"
 
 }  // namespace
 
@@ -34,6 +35,8 @@ const Kernels kKernels = {
     .itemBoxes = ItemBoxes,
     .search = Search,
     .nearItems = FindNearItems,
+    .writeVertexTriangle = WriteVertexTriangle,
+    .writeEdgeEdge = WriteEdgeEdge,
 };
 
 }  // namespace percale::collide::PERCALE_KERNELS

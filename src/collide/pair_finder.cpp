@@ -31,27 +31,15 @@ int Blocks(std::int64_t count) {
   return static_cast<int>((count + kLanes - 1) / kLanes);
 }
 
-bool HaveVertexInCommon(const VertexQuad& vertexTriangle) {
-  const auto [v, a, b, c] = vertexTriangle;
-  return ((v == a) | (v == b) | (v == c)) != 0;
-}
-bool HaveEndInCommon(const VertexQuad& edgeEdge) {
-  const auto [a, b, c, d] = edgeEdge;
-  return ((a == c) | (a == d) | (b == c) | (b == d)) != 0;
-}
-
-/// Adds make(k) for 0 <= k < count to a list, without those that are to be left out.
-template <class Make, class LeaveOut>
-void AddPairs(ChunkLists<VertexQuad>& lists, int list, int count, const Make& make, const LeaveOut& leaveOut) {
-  for (int k = 0; k < count;) {
+/// Adds what `write` writes to a list.
+void AddPairs(ChunkLists<VertexQuad>& lists, int list, int (*write)(const WriteArgs&), WriteArgs args) {
+  for (int left = args.count; left > 0; left -= args.count) {
     const std::span<VertexQuad> room = lists.Room(list);
-    const int end = static_cast<int>(std::min<std::int64_t>(count, k + static_cast<std::int64_t>(room.size())));
-    std::size_t written = 0;
-    for (; k < end; ++k) {
-      room[written] = make(k);
-      written += leaveOut(room[written]) ? 0 : 1;
-    }
-    lists.Add(list, static_cast<int>(written));
+    args.count = static_cast<int>(std::min<std::int64_t>(left, static_cast<std::int64_t>(room.size())));
+    args.to = room[0].data();
+    lists.Add(list, write(args));
+    args.numberA += args.count;
+    args.numberB += args.count;
   }
 }
 
@@ -281,23 +269,17 @@ void PairFinder::Impl::CompareItems() {
     NearItems near;
     const auto compare = [&](const LeafPair& pair) {
       kernels.nearItems(ItemsOf(pair.a), ItemsOf(pair.b), pair.a == pair.b, near);
-      const auto verticesA = clusters.OwnVertices(pair.a), verticesB = clusters.OwnVertices(pair.b);
-      const auto trianglesA = clusters.Triangles(pair.a), trianglesB = clusters.Triangles(pair.b);
-      const auto edgesA = clusters.Edges(pair.a), edgesB = clusters.Edges(pair.b);
-      const auto quad = [](std::int32_t v, const Triangle& t) { return VertexQuad{v, t.a, t.b, t.c}; };
+      const std::int32_t *verticesA = Corners(clusters.OwnVertices(pair.a)),
+                         *verticesB = Corners(clusters.OwnVertices(pair.b));
       AddPairs(
-          vertexTriangleLists, chunk, near.vertexTriangle,
-          [&](int k) { return quad(verticesA[near.vertexA[k]], trianglesB[near.triangleB[k]]); }, HaveVertexInCommon);
+          vertexTriangleLists, chunk, kernels.writeVertexTriangle,
+          {near.vertexTriangle, near.vertexA, near.triangleB, verticesA, Corners(clusters.Triangles(pair.b)), nullptr});
       AddPairs(
-          vertexTriangleLists, chunk, near.triangleVertex,
-          [&](int k) { return quad(verticesB[near.vertexB[k]], trianglesA[near.triangleA[k]]); }, HaveVertexInCommon);
-      AddPairs(
-          edgeEdgeLists, chunk, near.edges,
-          [&](int k) {
-            const Edge &e = edgesA[near.edgeA[k]], &f = edgesB[near.edgeB[k]];
-            return VertexQuad{e.a, e.b, f.a, f.b};
-          },
-          HaveEndInCommon);
+          vertexTriangleLists, chunk, kernels.writeVertexTriangle,
+          {near.triangleVertex, near.vertexB, near.triangleA, verticesB, Corners(clusters.Triangles(pair.a)), nullptr});
+      AddPairs(edgeEdgeLists, chunk, kernels.writeEdgeEdge,
+               {near.edges, near.edgeA, near.edgeB, Corners(clusters.Edges(pair.a)), Corners(clusters.Edges(pair.b)),
+                nullptr});
     };
     leafPairs.ForEntries(chunk, [&](std::span<const LeafPair> pairs) {
       for (const LeafPair& pair : pairs) compare(pair);
