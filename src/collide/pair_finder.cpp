@@ -1,185 +1,328 @@
 #include "collide/pair_finder.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <utility>
 #include <vector>
 
-#include "collide/cluster_tree.h"
+#include "collide/chunk_lists.h"
+#include "collide/clusters.h"
+#include "core/aligned.h"
 
 namespace percale {
+
+using namespace collide;
+
 namespace {
 
-constexpr int kFan = ClusterTree::kFan;
-constexpr double kFarthest = 1e30;  // m; what is farther away comes near nothing
-constexpr int kChunkLeaves = 32;    // that one thread takes at a time
+constexpr int kChunkVertices = 1024;  // that one thread takes at a time
+constexpr int kLeastChunkBlocks = 2;  // of leaves, likewise
+constexpr int kMostChunks = 512;      // of blocks of leaves
+constexpr std::size_t kSamples = 63;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Boxes at the start and at the end of a motion. A pair that is apart along one axis at both, the same one below, is
-/// apart all the while: what moves along straight lines in common time keeps that in between.
-struct Bounds {
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double low[6] = {kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity};  // x, y, z at the start, the end
-  double high[6] = {-kInfinity, -kInfinity, -kInfinity, -kInfinity, -kInfinity, -kInfinity};
+int Blocks(std::int64_t count) {
+  return static_cast<int>((count + kLanes - 1) / kLanes);
+}
 
-  void Add(const Bounds& o) {
-    for (int i = 0; i < 6; ++i) {
-      low[i] = std::min(low[i], o.low[i]);
-      high[i] = std::max(high[i], o.high[i]);
-    }
+/// Adds what `write` writes to a list.
+void AddPairs(ChunkLists<VertexQuad>& lists, int list, int (*write)(const WriteArgs&), WriteArgs args) {
+  for (int left = args.count; left > 0; left -= args.count) {
+    const std::span<VertexQuad> room = lists.Room(list);
+    args.count = static_cast<int>(std::min<std::int64_t>(left, static_cast<std::int64_t>(room.size())));
+    args.to = room[0].data();
+    lists.Add(list, write(args));
+    args.numberA += args.count;
+    args.numberB += args.count;
   }
-  friend bool Near(const Bounds& a, const Bounds& b) {
-    bool near = true;
-    for (int i = 0; i < 3; ++i) {
-      near = near && (b.low[i] <= a.high[i] || b.low[i + 3] <= a.high[i + 3]);
-      near = near && (a.low[i] <= b.high[i] || a.low[i + 3] <= b.high[i + 3]);
+}
+
+/// All entries of the lists, one list after another.
+class Joined {
+ public:
+  explicit Joined(int lists) : first_(Index(lists)) {}
+
+  void Join(const ChunkLists<VertexQuad>& lists, const Executor& executor) {
+    count_ = 0;
+    for (int list = 0; list < lists.lists(); ++list) {
+      first_[Index(list)] = count_;
+      count_ += Index(lists.Count(list));
     }
-    return near;
+    if (all_.size() < count_) all_.resize(count_);
+    executor.ForChunks(lists.lists(), [&](int list) {
+      VertexQuad* to = all_.data() + first_[Index(list)];
+      lists.ForEntries(list, [&](std::span<const VertexQuad> some) { to = std::copy(some.begin(), some.end(), to); });
+    });
   }
+  void Clear() { count_ = 0; }
+  std::span<const VertexQuad> all() const { return {all_.data(), count_}; }
+  std::size_t MemoryBytes() const { return all_.capacity() * sizeof all_[0] + first_.capacity() * sizeof first_[0]; }
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<VertexQuad> all_;  // never shrinks
+  std::size_t count_ = 0;
 };
+
+/// Of the corners of items of that type, as one array.
+template <class Item>
+const std::int32_t* Corners(std::span<const Item> items) {
+  static_assert(sizeof(Item) % sizeof(std::int32_t) == 0);
+  return reinterpret_cast<const std::int32_t*>(items.data());
+}
+
+/// The median of some of them, by component: amid them, and no single one can draw it away.
+std::array<double, 3> Middle(std::span<const Vec3> all) {
+  std::array<double, 3> middle = {0, 0, 0};
+  const std::size_t samples = std::min<std::size_t>(kSamples, all.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::array<double, kSamples> sorted;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < samples; ++i) {
+      const Vec3& p = all[i * all.size() / samples];
+      const double x = axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+      if (std::abs(x) < kFarthest) sorted[count++] = x;
+    }
+    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
+    if (count > 0) middle[axis] = sorted[count / 2];
+  }
+  return middle;
+}
 
 }  // namespace
 
 struct PairFinder::Impl {
-  struct Chunk {
-    std::vector<VertexQuad> vertexTriangle, edgeEdge;
-  };
+  Impl(const ContactMesh& m, const Executor& e, const Kernels& k);
 
-  Impl(const ContactMesh& m, const Executor& e)
-      : mesh(m),
-        executor(e),
-        tree(BuildClusterTree(m)),
-        vertexBounds(m.body.size()),
-        bounds(Index(tree.nodes())),
-        chunks(Index((tree.leaves() + kChunkLeaves - 1) / kChunkLeaves)) {}
+  void BoxVertices(const MeshMotion& motion, std::span<const double> reach);
+  void BoxLeaves();
+  void SearchLeaves(bool clothPairs);
+  void BoxItems();
+  void CompareItems();
 
-  /// Of vertex v, which is anywhere within the reach. Empty where that is too far or not a number.
-  Bounds VertexBounds(const MeshMotion& motion, double reach, std::size_t v) const {
-    Bounds b;
-    const double x[3] = {motion.start[v].x, motion.start[v].y, motion.start[v].z};
-    const double w[3] = {motion.way[v].x, motion.way[v].y, motion.way[v].z};
-    const bool cut = !motion.cut.empty() && motion.cut[v] != 0;
-    for (int i = 0; i < 3; ++i) {
-      const double end = x[i] + w[i];
-      if (!(std::abs(end) < kFarthest && std::abs(x[i]) < kFarthest)) return {};
-      b.low[i] = x[i] - reach;
-      b.high[i] = x[i] + reach;
-      b.low[i + 3] = (cut ? std::min(x[i], end) : end) - reach;
-      b.high[i + 3] = (cut ? std::max(x[i], end) : end) + reach;
-    }
-    return b;
+  /// Calls body(begin, end, chunk) for all blocks of leaves.
+  template <class Body>
+  void ForBlocks(const Body& body) const {
+    executor.ForChunks(
+        chunks, [&](int chunk) { body(chunk * chunkBlocks, std::min((chunk + 1) * chunkBlocks, leafBlocks), chunk); });
   }
-  Bounds Of(std::initializer_list<std::int32_t> vertices) const {
-    Bounds b;
-    for (const std::int32_t v : vertices) b.Add(vertexBounds[Index(v)]);
-    return b;
-  }
-
-  void Visit(int level, int node, int leaf, bool clothPairs, Chunk& out) const;
-  void Test(int a, int b, Chunk& out) const;
+  LeafItems ItemsOf(int leaf) const;
 
   const ContactMesh& mesh;
   const Executor& executor;
-  const ClusterTree tree;
-  std::vector<Bounds> vertexBounds;
-  std::vector<Bounds> bounds;  // per node
-  std::vector<Chunk> chunks;
-  std::vector<VertexQuad> vertexTriangle, edgeEdge;
+  const Kernels& kernels;
+  const Clusters clusters;
+  const int leafBlocks;
+  const int chunkBlocks;  // of one chunk
+  const int chunks;
+  std::vector<std::int32_t>
+      firstItemBlock;          // per leaf: those of its edges, then of its vertices, then of its triangles
+  AlignedVector<BoxRow> rows;  // per vertex
+  std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
+  std::vector<const BoxBlock*> levelBlocks;
+  AlignedVector<BoxBlock> itemBoxes;
+  std::vector<std::uint8_t> isTouched;  // per leaf: may have pairs
+  ChunkLists<LeafPair> leafPairs;
+  ChunkLists<VertexQuad> vertexTriangleLists, edgeEdgeLists;
+  Joined vertexTriangle, edgeEdge;
 };
 
-/// Tests a leaf against those below a node that do not come before it.
-void PairFinder::Impl::Visit(int level, int node, int leaf, bool clothPairs, Chunk& out) const {
-  if (!Near(bounds[Index(leaf)], bounds[Index(tree.levelFirst[Index(level)] + node)])) return;
-  if (level == 0) {
-    const bool otherCloth = node < tree.clothLeaves;
-    if (node >= leaf && (leaf < tree.clothLeaves) && (clothPairs || !otherCloth)) Test(leaf, node, out);
-    return;
+PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k)
+    : mesh(m),
+      executor(e),
+      kernels(k),
+      clusters(MakeClusters(m)),
+      leafBlocks(Blocks(clusters.leaves())),
+      chunkBlocks(std::max(kLeastChunkBlocks, (leafBlocks + kMostChunks - 1) / kMostChunks)),
+      chunks((leafBlocks + chunkBlocks - 1) / chunkBlocks),
+      rows(m.body.size()),
+      isTouched(Index(clusters.leaves())),
+      leafPairs(chunks),
+      vertexTriangleLists(chunks),
+      edgeEdgeLists(chunks),
+      vertexTriangle(chunks),
+      edgeEdge(chunks) {
+  BoxBlock empty;
+  std::fill_n(empty.low[0], 6 * kLanes, INFINITY);
+  std::fill_n(empty.high[0], 6 * kLanes, -INFINITY);
+  levels.emplace_back(Index(leafBlocks), empty);
+  do {
+    levels.emplace_back(Index(Blocks(static_cast<std::int64_t>(levels.back().size()))), empty);
+  } while (levels.back().size() > 1);
+  for (const auto& level : levels) levelBlocks.push_back(level.data());
+  firstItemBlock.push_back(0);
+  for (int leaf = 0; leaf < clusters.leaves(); ++leaf) {
+    const auto count = [](const auto& items) { return Blocks(static_cast<std::int64_t>(items.size())); };
+    firstItemBlock.push_back(firstItemBlock.back() + count(clusters.Edges(leaf)) + count(clusters.OwnVertices(leaf)) +
+                             count(clusters.Triangles(leaf)));
   }
-  const int size = tree.levelFirst[Index(level)] - tree.levelFirst[Index(level - 1)];
-  for (int child = kFan * node; child < std::min(kFan * (node + 1), size); ++child) {
-    Visit(level - 1, child, leaf, clothPairs, out);
+  itemBoxes.assign(Index(firstItemBlock.back()), empty);
+}
+
+void PairFinder::Impl::BoxVertices(const MeshMotion& motion, std::span<const double> reach) {
+  // Floats are exact near zero: that is where cloths shall be, at the start and at the end.
+  const auto cloths = Index(mesh.clothVertices);
+  const std::array<double, 3> origin = Middle(motion.start.first(cloths)), way = Middle(motion.way.first(cloths));
+  const int count = mesh.vertices();
+  executor.ForChunks((count + kChunkVertices - 1) / kChunkVertices, [&](int chunk) {
+    kernels.vertexRows({.begin = chunk * kChunkVertices,
+                        .end = std::min((chunk + 1) * kChunkVertices, count),
+                        .vertices = count,
+                        .start = motion.start.data(),
+                        .way = motion.way.data(),
+                        .cut = motion.cut.empty() ? nullptr : motion.cut.data(),
+                        .body = mesh.body.data(),
+                        .reach = reach.data(),
+                        .origin = {origin[0], origin[1], origin[2]},
+                        .originWay = {way[0], way[1], way[2]},
+                        .rows = rows.data()});
+  });
+}
+
+void PairFinder::Impl::BoxLeaves() {
+  ForBlocks([&](int begin, int end, int) {
+    kernels.leafBoxes({.begin = begin,
+                       .end = end,
+                       .leaves = clusters.leaves(),
+                       .vertexFirst = clusters.vertexFirst.data(),
+                       .vertices = clusters.vertices.data(),
+                       .rows = rows.data(),
+                       .boxes = levels[0].data()});
+  });
+  for (std::size_t level = 1; level < levels.size(); ++level) {
+    kernels.parentBoxes(levels[level - 1].data(), static_cast<int>(levels[level - 1].size()), levels[level].data());
   }
 }
 
-void PairFinder::Impl::Test(int a, int b, Chunk& out) const {
-  const auto testVertices = [&](int one, int other) {
-    for (const std::int32_t v : tree.OwnVertices(one)) {
-      for (const Triangle& t : tree.Triangles(other)) {
-        if (!Near(Of({v}), Of({t.a, t.b, t.c})) || v == t.a || v == t.b || v == t.c) continue;
-        out.vertexTriangle.push_back({v, t.a, t.b, t.c});
+void PairFinder::Impl::SearchLeaves(bool clothPairs) {
+  leafPairs.Clear();
+  ForBlocks([&](int begin, int end, int chunk) {
+    const auto put = [&](const LeafPair* pairs, int count) {
+      while (count > 0) {
+        const std::span<LeafPair> room = leafPairs.Room(chunk);
+        const int some = std::min(count, static_cast<int>(room.size()));
+        std::copy_n(pairs, some, room.begin());
+        leafPairs.Add(chunk, some);
+        pairs += some;
+        count -= some;
       }
-    }
-  };
-  testVertices(a, b);
-  if (a != b) testVertices(b, a);
-  const auto ofA = tree.Edges(a), ofB = tree.Edges(b);
-  for (std::size_t i = 0; i < ofA.size(); ++i) {
-    const Edge& e = ofA[i];
-    for (std::size_t j = a == b ? i + 1 : 0; j < ofB.size(); ++j) {
-      const Edge& f = ofB[j];
-      if (!Near(Of({e.a, e.b}), Of({f.a, f.b})) || e.a == f.a || e.a == f.b || e.b == f.a || e.b == f.b) continue;
-      out.edgeEdge.push_back({e.a, e.b, f.a, f.b});
-    }
+    };
+    kernels.search({.begin = begin,
+                    .end = end,
+                    .levels = levelBlocks.data(),
+                    .levelCount = static_cast<int>(levels.size()),
+                    .clothLeaves = clusters.clothLeaves,
+                    .clothPairs = clothPairs,
+                    .put = [](void* context, const LeafPair* pairs,
+                              int count) { (*static_cast<decltype(put)*>(context))(pairs, count); },
+                    .context = const_cast<void*>(static_cast<const void*>(&put))});
+  });
+  leafPairs.KeepRoom();
+  std::fill(isTouched.begin(), isTouched.end(), std::uint8_t{0});
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    leafPairs.ForEntries(chunk, [&](std::span<const LeafPair> pairs) {
+      for (const LeafPair& pair : pairs) isTouched[Index(pair.a)] = isTouched[Index(pair.b)] = 1;
+    });
   }
 }
 
-PairFinder::PairFinder(const ContactMesh& mesh, const Executor& executor)
-    : impl_(std::make_unique<Impl>(mesh, executor)) {}
+LeafItems PairFinder::Impl::ItemsOf(int leaf) const {
+  LeafItems items;
+  items.leafBoxes = &levels[0][Index(leaf / kLanes)];
+  items.lane = leaf % kLanes;
+  items.edges = static_cast<int>(clusters.Edges(leaf).size());
+  items.vertices = static_cast<int>(clusters.OwnVertices(leaf).size());
+  items.triangles = static_cast<int>(clusters.Triangles(leaf).size());
+  items.edgeBoxes = itemBoxes.data() + firstItemBlock[Index(leaf)];
+  items.vertexBoxes = items.edgeBoxes + Blocks(items.edges);
+  items.triangleBoxes = items.vertexBoxes + Blocks(items.vertices);
+  return items;
+}
+
+void PairFinder::Impl::BoxItems() {
+  ForBlocks([&](int begin, int end, int) {
+    for (int leaf = begin * kLanes; leaf < std::min(end * kLanes, clusters.leaves()); ++leaf) {
+      if (isTouched[Index(leaf)] == 0) continue;
+      BoxBlock* to = itemBoxes.data() + firstItemBlock[Index(leaf)];
+      const auto box = [&](const std::int32_t* corners, int cornersPerItem, std::size_t items) {
+        const int count = static_cast<int>(items);
+        kernels.itemBoxes({corners, cornersPerItem, count, rows.data(), to});
+        to += Blocks(count);
+      };
+      box(Corners(clusters.Edges(leaf)), 2, clusters.Edges(leaf).size());
+      box(Corners(clusters.OwnVertices(leaf)), 1, clusters.OwnVertices(leaf).size());
+      box(Corners(clusters.Triangles(leaf)), 3, clusters.Triangles(leaf).size());
+    }
+  });
+}
+
+void PairFinder::Impl::CompareItems() {
+  vertexTriangleLists.Clear();
+  edgeEdgeLists.Clear();
+  executor.ForChunks(chunks, [&](int chunk) {
+    NearItems near;
+    const auto compare = [&](const LeafPair& pair) {
+      kernels.nearItems(ItemsOf(pair.a), ItemsOf(pair.b), pair.a == pair.b, near);
+      const std::int32_t *verticesA = Corners(clusters.OwnVertices(pair.a)),
+                         *verticesB = Corners(clusters.OwnVertices(pair.b));
+      AddPairs(
+          vertexTriangleLists, chunk, kernels.writeVertexTriangle,
+          {near.vertexTriangle, near.vertexA, near.triangleB, verticesA, Corners(clusters.Triangles(pair.b)), nullptr});
+      AddPairs(
+          vertexTriangleLists, chunk, kernels.writeVertexTriangle,
+          {near.triangleVertex, near.vertexB, near.triangleA, verticesB, Corners(clusters.Triangles(pair.a)), nullptr});
+      AddPairs(edgeEdgeLists, chunk, kernels.writeEdgeEdge,
+               {near.edges, near.edgeA, near.edgeB, Corners(clusters.Edges(pair.a)), Corners(clusters.Edges(pair.b)),
+                nullptr});
+    };
+    leafPairs.ForEntries(chunk, [&](std::span<const LeafPair> pairs) {
+      for (const LeafPair& pair : pairs) compare(pair);
+    });
+  });
+  vertexTriangleLists.KeepRoom();
+  edgeEdgeLists.KeepRoom();
+}
+
+PairFinder::PairFinder(const ContactMesh& mesh, const Executor& executor) : PairFinder(mesh, executor, BestKernels()) {}
+PairFinder::PairFinder(const ContactMesh& mesh, const Executor& executor, const Kernels& kernels)
+    : impl_(std::make_unique<Impl>(mesh, executor, kernels)) {}
 PairFinder::~PairFinder() = default;
 
 void PairFinder::Find(const MeshMotion& motion, std::span<const double> reach, bool clothPairs) {
   Impl& s = *impl_;
-  const ClusterTree& tree = s.tree;
-  s.vertexTriangle.clear();
-  s.edgeEdge.clear();
-  if (tree.leaves() == 0) return;
-  for (std::size_t v = 0; v < s.vertexBounds.size(); ++v) {
-    s.vertexBounds[v] = s.VertexBounds(motion, reach[Index(s.mesh.body[v])], v);
-  }
-  for (int leaf = 0; leaf < tree.leaves(); ++leaf) {
-    Bounds b;
-    for (const std::int32_t v : tree.Vertices(leaf)) b.Add(s.vertexBounds[Index(v)]);
-    s.bounds[Index(leaf)] = b;
-  }
-  for (int level = 1; level < tree.levels(); ++level) {
-    const int below = tree.levelFirst[Index(level - 1)], begin = tree.levelFirst[Index(level)];
-    for (int node = begin; node < tree.levelFirst[Index(level + 1)]; ++node) {
-      Bounds b;
-      const int first = below + kFan * (node - begin);
-      for (int child = first; child < std::min(first + kFan, begin); ++child) b.Add(s.bounds[Index(child)]);
-      s.bounds[Index(node)] = b;
-    }
-  }
-  s.executor.ForChunks(static_cast<int>(s.chunks.size()), [&](int chunk) {
-    Impl::Chunk& out = s.chunks[Index(chunk)];
-    out.vertexTriangle.clear();
-    out.edgeEdge.clear();
-    const int begin = chunk * kChunkLeaves, end = std::min(begin + kChunkLeaves, tree.leaves());
-    for (int leaf = begin; leaf < end; ++leaf) s.Visit(tree.levels() - 1, 0, leaf, clothPairs, out);
-  });
-  for (const Impl::Chunk& chunk : s.chunks) {
-    s.vertexTriangle.insert(s.vertexTriangle.end(), chunk.vertexTriangle.begin(), chunk.vertexTriangle.end());
-    s.edgeEdge.insert(s.edgeEdge.end(), chunk.edgeEdge.begin(), chunk.edgeEdge.end());
-  }
+  s.vertexTriangle.Clear();
+  s.edgeEdge.Clear();
+  if (s.clusters.clothLeaves == 0) return;
+  s.BoxVertices(motion, reach);
+  s.BoxLeaves();
+  s.SearchLeaves(clothPairs);
+  s.BoxItems();
+  s.CompareItems();
+  s.vertexTriangle.Join(s.vertexTriangleLists, s.executor);
+  s.edgeEdge.Join(s.edgeEdgeLists, s.executor);
 }
 
 std::span<const VertexQuad> PairFinder::vertexTriangle() const {
-  return impl_->vertexTriangle;
+  return impl_->vertexTriangle.all();
 }
 
 std::span<const VertexQuad> PairFinder::edgeEdge() const {
-  return impl_->edgeEdge;
+  return impl_->edgeEdge.all();
 }
 
 std::size_t PairFinder::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  std::size_t sum = impl_->tree.MemoryBytes() + bytes(impl_->vertexBounds) + bytes(impl_->bounds) +
-                    bytes(impl_->chunks) + bytes(impl_->vertexTriangle) + bytes(impl_->edgeEdge);
-  for (const Impl::Chunk& chunk : impl_->chunks) sum += bytes(chunk.vertexTriangle) + bytes(chunk.edgeEdge);
+  const Impl& s = *impl_;
+  std::size_t sum = s.clusters.MemoryBytes() + bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) +
+                    bytes(s.isTouched) + s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() +
+                    s.edgeEdgeLists.MemoryBytes() + s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
+  for (const auto& level : s.levels) sum += bytes(level);
   return sum;
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "collide/contact_mesh.h"
+#include "collide/kernels.h"
 #include "core/executor.h"
 #include "percale/vec3.h"
 
@@ -27,6 +28,7 @@ class PairFinder {
  public:
   /// The mesh must outlive it.
   PairFinder(const ContactMesh& mesh, const Executor& executor);
+  PairFinder(const ContactMesh& mesh, const Executor& executor, const collide::Kernels& kernels);
   ~PairFinder();
 
   /// Lists all pairs of a vertex and a triangle, and of two edges, whose boxes come within reach[body] +

@@ -1,4 +1,4 @@
-#include "collide/cluster_tree.h"
+#include "collide/clusters.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,8 @@
 namespace percale {
 namespace {
 
-constexpr int kLeafItems = ClusterTree::kLeafItems;
+constexpr std::size_t kLeafItems = Clusters::kLeafItems;
+constexpr std::size_t kSmallestGroup = 4;  // of items that are sorted by place within a leaf
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -49,18 +50,21 @@ class EdgeMap {
   std::vector<std::int32_t> first_, at_;
 };
 
-/// How many of so many leaves go to the left: about half, in groups as large as may be, so that the nodes above the
-/// leaves do not mix what lies apart.
-std::size_t LeftLeaves(std::size_t leaves) {
-  std::size_t group = 1;
-  while (4 * group <= leaves) group *= 2;
-  return std::max<std::size_t>(1, (leaves / 2 + group / 2) / group) * group;
+/// How many of so many groups go to the left: about half, a multiple of a power of two as large as may be, so that the
+/// nodes above the leaves do not mix what lies apart.
+std::size_t LeftGroups(std::size_t groups) {
+  std::size_t unit = 1;
+  while (4 * unit <= groups) unit *= 2;
+  return std::max<std::size_t>(1, (groups / 2 + unit / 2) / unit) * unit;
 }
 
-/// Sorts items so that each kLeafItems of them lie together.
-void Cut(std::span<Item> items) {
-  const std::size_t leaves = (items.size() + kLeafItems - 1) / kLeafItems;
-  if (leaves < 2) return;
+/// Sorts items so that those of a group lie together, and within it those of half a group, and so on.
+void Cut(std::span<Item> items, std::size_t group = kLeafItems) {
+  const std::size_t groups = (items.size() + group - 1) / group;
+  if (groups < 2) {
+    if (group > kSmallestGroup) Cut(items, group / 2);
+    return;
+  }
   std::array<double, 3> low, high;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-std::numeric_limits<double>::infinity());
@@ -74,13 +78,13 @@ void Cut(std::span<Item> items) {
   for (const std::size_t other : {1, 2}) {
     if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
   }
-  const std::size_t left = LeftLeaves(leaves) * kLeafItems;
+  const std::size_t left = LeftGroups(groups) * group;
   std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(left), items.end(),
                    [axis](const Item& a, const Item& b) {
                      return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.corners < b.corners;
                    });
-  Cut(items.first(left));
-  Cut(items.subspan(left));
+  Cut(items.first(left), group);
+  Cut(items.subspan(left), group);
 }
 
 std::vector<Item> MakeItems(const ContactMesh& mesh, const EdgeMap& edgeMap) {
@@ -116,72 +120,64 @@ std::vector<Item> MakeItems(const ContactMesh& mesh, const EdgeMap& edgeMap) {
 
 }  // namespace
 
-ClusterTree BuildClusterTree(const ContactMesh& mesh) {
+Clusters MakeClusters(const ContactMesh& mesh) {
   const EdgeMap edgeMap(mesh);
   std::vector<Item> items = MakeItems(mesh, edgeMap);
   const auto bodyOf = [&](const Item& item) { return mesh.body[Index(item.corners[0])]; };
   std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return bodyOf(a) < bodyOf(b); });
 
-  ClusterTree tree;
+  Clusters clusters;
   std::vector<char> vertexOwned(Index(mesh.vertices()), 0), edgeOwned(mesh.edges.size(), 0);
   std::vector<std::int32_t> listed(Index(mesh.vertices()), -1);  // per vertex, the last leaf that lists it
-  tree.vertexFirst = tree.edgeFirst = tree.triangleFirst = {0};
+  clusters.vertexFirst = clusters.edgeFirst = clusters.triangleFirst = {0};
   const auto addLeaf = [&](std::span<const Item> leaf) {
-    const auto number = static_cast<std::int32_t>(tree.body.size());
+    const auto number = static_cast<std::int32_t>(clusters.body.size());
     const auto list = [&](bool owned) {
       for (const Item& item : leaf) {
         for (const std::int32_t v : item.corners) {
           if (v < 0 || listed[Index(v)] == number || (owned && vertexOwned[Index(v)])) continue;
-          tree.vertices.push_back(v);
+          clusters.vertices.push_back(v);
           listed[Index(v)] = number;
           vertexOwned[Index(v)] = 1;
         }
       }
     };
     list(true);
-    tree.ownVertices.push_back(static_cast<std::int32_t>(tree.vertices.size()) - tree.vertexFirst.back());
+    clusters.ownVertices.push_back(static_cast<std::int32_t>(clusters.vertices.size()) - clusters.vertexFirst.back());
     list(false);
     for (const Item& item : leaf) {
       const auto [a, b, c] = item.corners;
-      if (c >= 0) tree.triangles.push_back({a, b, c});
+      if (c >= 0) clusters.triangles.push_back({a, b, c});
       for (const Edge& side : {Edge{a, b}, Edge{b, c}, Edge{c, a}}) {
         const std::int32_t e = side.a < 0 || side.b < 0 ? -1 : edgeMap.Find(side.a, side.b);
         if (e < 0 || edgeOwned[Index(e)]) continue;
         edgeOwned[Index(e)] = 1;
-        tree.edges.push_back(mesh.edges[Index(e)]);
+        clusters.edges.push_back(mesh.edges[Index(e)]);
       }
     }
-    tree.vertexFirst.push_back(static_cast<std::int32_t>(tree.vertices.size()));
-    tree.edgeFirst.push_back(static_cast<std::int32_t>(tree.edges.size()));
-    tree.triangleFirst.push_back(static_cast<std::int32_t>(tree.triangles.size()));
-    tree.body.push_back(bodyOf(leaf[0]));
-    if (tree.body.back() < mesh.clothBodies) ++tree.clothLeaves;
+    clusters.vertexFirst.push_back(static_cast<std::int32_t>(clusters.vertices.size()));
+    clusters.edgeFirst.push_back(static_cast<std::int32_t>(clusters.edges.size()));
+    clusters.triangleFirst.push_back(static_cast<std::int32_t>(clusters.triangles.size()));
+    clusters.body.push_back(bodyOf(leaf[0]));
+    if (clusters.body.back() < mesh.clothBodies) ++clusters.clothLeaves;
   };
   for (auto begin = items.begin(); begin != items.end();) {
     const auto end = std::find_if(begin, items.end(), [&](const Item& item) { return bodyOf(item) != bodyOf(*begin); });
     const std::span<Item> body(begin, end);
     Cut(body);
     for (std::size_t i = 0; i < body.size(); i += kLeafItems) {
-      addLeaf(body.subspan(i, std::min<std::size_t>(kLeafItems, body.size() - i)));
+      addLeaf(body.subspan(i, std::min(kLeafItems, body.size() - i)));
     }
     begin = end;
   }
-  assert(tree.edges.size() == mesh.edges.size());
-
-  tree.levelFirst = {0};
-  int count = tree.leaves();
-  while (true) {
-    tree.levelFirst.push_back(tree.levelFirst.back() + count);
-    if (count <= 1) break;
-    count = (count + ClusterTree::kFan - 1) / ClusterTree::kFan;
-  }
-  return tree;
+  assert(clusters.edges.size() == mesh.edges.size());
+  return clusters;
 }
 
-std::size_t ClusterTree::MemoryBytes() const {
+std::size_t Clusters::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   return bytes(body) + bytes(vertexFirst) + bytes(vertices) + bytes(ownVertices) + bytes(edgeFirst) + bytes(edges) +
-         bytes(triangleFirst) + bytes(triangles) + bytes(levelFirst);
+         bytes(triangleFirst) + bytes(triangles);
 }
 
 }  // namespace percale

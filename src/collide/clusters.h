@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A mesh in clusters of neighbours, built once: leaves of a few triangles each, and a tree over them.
+/// A mesh in leaves of a few triangles each, built once: neighbours share a leaf, or have leaves near each other.
 
 #include <cstdint>
 #include <span>
@@ -13,11 +13,8 @@ namespace percale {
 /// An item is a triangle, an edge without triangles or a vertex without edges. The items of a body are cut in two along
 /// the longest axis again and again; what is left are its leaves. Each vertex and each edge belongs to the first leaf
 /// that has an item with it.
-struct ClusterTree {
-  static constexpr int kLeafItems = 16;                 ///< At most.
-  static constexpr int kLeafVertices = 3 * kLeafItems;  ///< At most, of all its items.
-  static constexpr int kLeafEdges = 3 * kLeafItems;     ///< At most.
-  static constexpr int kFan = 8;                        ///< Children of a node.
+struct Clusters {
+  static constexpr int kLeafItems = 16;  ///< At most; so it has at most 48 vertices and 48 edges.
 
   int clothLeaves = 0;                      ///< Leaves from here on are those of obstacles.
   std::vector<std::int32_t> body;           ///< Per leaf, ascending.
@@ -28,12 +25,8 @@ struct ClusterTree {
   std::vector<Edge> edges;                  ///< ... these, as the mesh has them.
   std::vector<std::int32_t> triangleFirst;  ///< Likewise, of ...
   std::vector<Triangle> triangles;          ///< ... these, as the mesh has them.
-  std::vector<std::int32_t> levelFirst;     ///< Nodes of all levels in one row: leaves first, then groups of kFan of
-                                            ///< the level before, up to one root; one more is where they end.
 
   int leaves() const { return static_cast<int>(body.size()); }
-  int levels() const { return static_cast<int>(levelFirst.size()) - 1; }
-  int nodes() const { return levelFirst.back(); }
   std::span<const std::int32_t> Vertices(int leaf) const { return Part(vertices, vertexFirst, leaf); }
   std::span<const std::int32_t> OwnVertices(int leaf) const {
     return Vertices(leaf).first(static_cast<std::size_t>(ownVertices[static_cast<std::size_t>(leaf)]));
@@ -51,6 +44,6 @@ struct ClusterTree {
 };
 
 /// Takes time in proportion to n log n.
-ClusterTree BuildClusterTree(const ContactMesh& mesh);
+Clusters MakeClusters(const ContactMesh& mesh);
 
 }  // namespace percale

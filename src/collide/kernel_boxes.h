@@ -1,0 +1,163 @@
+// The boxes of vertices, items, leaves and nodes. Included by kernels_impl.h inside the namespace of an instruction
+// set, like everything there; never elsewhere.
+
+constexpr float kInfinity = __builtin_inff();
+
+inline Floats Min(Floats a, Floats b) {
+  return Select(b > a, a, b);
+}
+inline Floats Max(Floats a, Floats b) {
+  return Select(a > b, a, b);
+}
+inline Floats Abs(Floats a) {
+  return Max(a, -a);
+}
+
+/// A box that grows.
+struct Row {
+  Floats low[2], high[2];
+
+  static Row Load(const BoxRow& from) {
+    Row row;
+    for (int i = 0; i < 2; ++i) {
+      row.low[i] = Floats::Load(from.low[i]);
+      row.high[i] = Floats::Load(from.high[i]);
+    }
+    return row;
+  }
+  static Row Empty() {
+    Row row;
+    for (int i = 0; i < 2; ++i) {
+      row.low[i] = Floats(kInfinity);
+      row.high[i] = Floats(-kInfinity);
+    }
+    return row;
+  }
+  void Add(const Row& o) {
+    for (int i = 0; i < 2; ++i) {
+      low[i] = Min(low[i], o.low[i]);
+      high[i] = Max(high[i], o.high[i]);
+    }
+  }
+  void Store(BoxRow& to) const {
+    for (int i = 0; i < 2; ++i) {
+      low[i].Store(to.low[i]);
+      high[i].Store(to.high[i]);
+    }
+  }
+  /// Into one lane.
+  void Store(BoxBlock& to, int lane) const {
+    for (int i = 0; i < 6; ++i) {
+      to.low[i][lane] = low[i / 3][i % 3];
+      to.high[i][lane] = high[i / 3][i % 3];
+    }
+  }
+};
+
+// What is within the reach r of x, in floats: of size |x| and r are the conversions' errors, at most 2^-24 of it, and
+// those of the two operations that follow; 2^-22 are more than all. The last term is for what underflows.
+constexpr double kMore = 0x1p-22, kLeast = 1e-37;
+
+void VertexRows(const RowArgs& a) {
+  const double origin[4] = {a.origin[0], a.origin[1], a.origin[2], 0};
+  const double originWay[4] = {a.originWay[0], a.originWay[1], a.originWay[2], 0};
+  const Doubles o = Doubles::Load(origin), oWay = Doubles::Load(originWay);
+  const Floats more(kMore);
+  const auto put = [&](int v, const double* start, const double* way) {
+    const Doubles from = Doubles::Load(start) - o;
+    const Floats s(from), e(from + (Doubles::Load(way) - oWay));
+    const Floats size = Abs(s) + Abs(e), reach(a.reach[a.body[v]] * (1 + kMore) + kLeast);
+    Row row = Row::Empty();
+    if (size[0] + size[1] + size[2] < kFarthest) {
+      const Floats atStart = Abs(s) * more + reach, atEnd = Abs(e) * more + reach;
+      row.low[0] = s - atStart;
+      row.high[0] = s + atStart;
+      row.low[1] = e - atEnd;
+      row.high[1] = e + atEnd;
+      if (a.cut && a.cut[v] != 0) {  // it may also end where it starts
+        const Floats r(from - oWay), atRest = Abs(r) * more + reach;
+        row.low[1] = Min(r - atRest, row.low[1]);
+        row.high[1] = Max(r + atRest, row.high[1]);
+      }
+    }
+    row.Store(a.rows[v]);
+  };
+  const int whole = a.end < a.vertices ? a.end : a.vertices - 1;  // four numbers can be read
+  for (int v = a.begin; v < whole; ++v) put(v, &a.start[v].x, &a.way[v].x);
+  for (int v = whole; v < a.end; ++v) {
+    const double start[4] = {a.start[v].x, a.start[v].y, a.start[v].z, 0};
+    const double way[4] = {a.way[v].x, a.way[v].y, a.way[v].z, 0};
+    put(v, start, way);
+  }
+}
+
+void LeafBoxes(const LeafBoxArgs& a) {
+  for (int leaf = a.begin * kLanes; leaf < a.end * kLanes; ++leaf) {
+    Row sum = Row::Empty();
+    if (leaf < a.leaves) {
+      for (int i = a.vertexFirst[leaf]; i < a.vertexFirst[leaf + 1]; ++i) sum.Add(Row::Load(a.rows[a.vertices[i]]));
+    }
+    sum.Store(a.boxes[leaf / kLanes], leaf % kLanes);
+  }
+}
+
+void ParentBoxes(const BoxBlock* boxes, int blocks, BoxBlock* parents) {
+  for (int block = 0; block < blocks; ++block) {
+    BoxBlock& parent = parents[block / kLanes];
+    for (int i = 0; i < 6; ++i) {
+      float low = kInfinity, high = -kInfinity;
+      for (const float x : boxes[block].low[i]) low = x < low ? x : low;
+      for (const float x : boxes[block].high[i]) high = x > high ? x : high;
+      parent.low[i][block % kLanes] = low;
+      parent.high[i][block % kLanes] = high;
+    }
+  }
+}
+
+/// Four rows of x, y, z become four x, four y, four z.
+inline void StoreTransposed(const Floats rows[4], float (*to)[kLanes], int lane) {
+#if defined(__GNUC__)
+  const auto xy0 = __builtin_shufflevector(rows[0].v, rows[1].v, 0, 4, 1, 5);
+  const auto xy2 = __builtin_shufflevector(rows[2].v, rows[3].v, 0, 4, 1, 5);
+  const auto z0 = __builtin_shufflevector(rows[0].v, rows[1].v, 2, 6, 2, 6);
+  const auto z2 = __builtin_shufflevector(rows[2].v, rows[3].v, 2, 6, 2, 6);
+  Floats(__builtin_shufflevector(xy0, xy2, 0, 1, 4, 5)).Store(to[0] + lane);
+  Floats(__builtin_shufflevector(xy0, xy2, 2, 3, 6, 7)).Store(to[1] + lane);
+  Floats(__builtin_shufflevector(z0, z2, 0, 1, 4, 5)).Store(to[2] + lane);
+#else
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 4; ++k) to[i][lane + k] = rows[k][i];
+  }
+#endif
+}
+
+template <int corners>
+void ItemBoxes(const ItemBoxArgs& a) {
+  for (int first = 0; first < a.items; first += 4) {
+    Floats low[2][4], high[2][4];
+    for (int k = 0; k < 4; ++k) {
+      Row row = Row::Empty();
+      if (first + k < a.items) {
+        const std::int32_t* at = a.corners + corners * (first + k);
+        row = Row::Load(a.rows[at[0]]);
+        if (corners > 1) row.Add(Row::Load(a.rows[at[1]]));
+        if (corners > 2) row.Add(Row::Load(a.rows[at[2]]));
+      }
+      for (int i = 0; i < 2; ++i) {
+        low[i][k] = row.low[i];
+        high[i][k] = row.high[i];
+      }
+    }
+    BoxBlock& block = a.boxes[first / kLanes];
+    for (int i = 0; i < 2; ++i) {
+      StoreTransposed(low[i], block.low + 3 * i, first % kLanes);
+      StoreTransposed(high[i], block.high + 3 * i, first % kLanes);
+    }
+  }
+}
+
+void ItemBoxes(const ItemBoxArgs& a) {
+  if (a.cornersPerItem == 1) ItemBoxes<1>(a);
+  if (a.cornersPerItem == 2) ItemBoxes<2>(a);
+  if (a.cornersPerItem == 3) ItemBoxes<3>(a);
+}

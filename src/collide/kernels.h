@@ -1,0 +1,125 @@
+#pragma once
+/// \file
+/// The inner loops of the search for pairs: pure functions over arrays that the caller owns. The same source is
+/// compiled for several instruction sets and chosen once at run time (`BestKernels`); all give the same bits.
+
+#include <cstdint>
+#include <vector>
+
+#include "percale/mesh.h"
+#include "percale/vec3.h"
+
+namespace percale::collide {
+
+/// What lies farther from the origin comes near nothing [m].
+inline constexpr float kFarthest = 1e30f;
+/// Boxes side by side.
+inline constexpr int kLanes = 8;
+
+/// The box of a vertex at the start and at the end of a motion. Numbers are rounded such that it grows.
+struct alignas(64) BoxRow {
+  float low[2][4], high[2][4];  ///< x, y, z and nothing, at the start and at the end [m].
+};
+
+/// The boxes of eight things. An empty one has low = infinity and high = -infinity.
+struct alignas(64) BoxBlock {
+  float low[6][kLanes], high[6][kLanes];  ///< x, y, z at the start, x, y, z at the end [m].
+};
+
+struct RowArgs {
+  int begin, end;           ///< Vertices.
+  int vertices;             ///< Of all.
+  const Vec3* start;        ///< [m]
+  const Vec3* way;          ///< [m]
+  const std::uint8_t* cut;  ///< As MeshMotion has it; or null.
+  const std::int32_t* body;
+  const double* reach;  ///< Per body [m].
+  double origin[3];     ///< Boxes at the start are relative to it [m] ...
+  double originWay[3];  ///< ... and at the end to that and this [m].
+  BoxRow* rows;         ///< Out: what a vertex reaches; empty for what is farther than kFarthest or not a number.
+};
+
+struct LeafBoxArgs {
+  int begin, end;  ///< Blocks of leaves.
+  int leaves;      ///< Of all.
+  const std::int32_t* vertexFirst;
+  const std::int32_t* vertices;  ///< As Clusters has them.
+  const BoxRow* rows;
+  BoxBlock* boxes;  ///< Out; those behind the last leaf are empty.
+};
+
+struct ItemBoxArgs {
+  const std::int32_t* corners;
+  int cornersPerItem;  ///< 1, 2 or 3.
+  int items;
+  const BoxRow* rows;
+  BoxBlock* boxes;  ///< Out; those behind the last item are not written.
+};
+
+/// Leaf a does not come behind leaf b.
+struct LeafPair {
+  std::int32_t a, b;
+};
+
+struct SearchArgs {
+  int begin, end;                 ///< Blocks of leaves.
+  const BoxBlock* const* levels;  ///< Boxes of leaves, then of the blocks before; the last is one block with one box.
+  int levelCount;                 ///< At least two.
+  int clothLeaves;                ///< Leaves from here on are those of obstacles.
+  bool clothPairs;                ///< Whether a cloth leaf is to be compared with cloth leaves.
+  void (*put)(void* context, const LeafPair* pairs, int count);  ///< Takes what is found, up to kLanes at a time.
+  void* context;
+};
+
+/// What a leaf has. Behind the last item of a kind its last block has empty boxes.
+struct LeafItems {
+  const BoxBlock* leafBoxes;  ///< In which the leaf's is ...
+  int lane;                   ///< ... here.
+  int edges, vertices, triangles;
+  const BoxBlock* edgeBoxes;
+  const BoxBlock* vertexBoxes;  ///< Of its own.
+  const BoxBlock* triangleBoxes;
+};
+
+/// Pairs of items of two leaves a and b, each by its number in its leaf. Behind `most` there is room for whole blocks.
+struct NearItems {
+  static constexpr int kMostEdges = 48 * 48, kMostTriangles = 48 * 16;
+  int edges = 0, vertexTriangle = 0, triangleVertex = 0;
+  std::uint8_t edgeA[kMostEdges + kLanes], edgeB[kMostEdges + kLanes];
+  std::uint8_t vertexA[kMostTriangles + kLanes], triangleB[kMostTriangles + kLanes];
+  std::uint8_t triangleA[kMostTriangles + kLanes], vertexB[kMostTriangles + kLanes];
+};
+
+/// Pairs that are to be written as four vertices each.
+struct WriteArgs {
+  int count;
+  const std::uint8_t* numberA;
+  const std::uint8_t* numberB;
+  const std::int32_t* a;  ///< The vertices of items of a, one item after another.
+  const std::int32_t* b;
+  std::int32_t* to;  ///< Out: room for all.
+};
+
+struct Kernels {
+  const char* name;
+  void (*vertexRows)(const RowArgs&);
+  void (*leafBoxes)(const LeafBoxArgs&);
+  /// Writes the box of each block of `boxes` to its lane of `parents`.
+  void (*parentBoxes)(const BoxBlock* boxes, int blocks, BoxBlock* parents);
+  void (*itemBoxes)(const ItemBoxArgs&);
+  /// Finds the leaves that are near each other.
+  void (*search)(const SearchArgs&);
+  /// Finds the items that are near each other; in a leaf itself (`same`) pairs of edges once.
+  void (*nearItems)(const LeafItems& a, const LeafItems& b, bool same, NearItems& out);
+  /// Writes pairs of a vertex and a triangle, without those with a vertex in common; returns how many.
+  int (*writeVertexTriangle)(const WriteArgs&);
+  /// The same of two edges.
+  int (*writeEdgeEdge)(const WriteArgs&);
+};
+
+/// All that the processor can run, the plain ones first and the fastest last.
+std::vector<const Kernels*> RunnableKernels();
+/// The last of them.
+const Kernels& BestKernels();
+
+}  // namespace percale::collide
