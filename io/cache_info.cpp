@@ -18,6 +18,7 @@
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "io/cache_kind.h"
+#include "io/point_cache.h"
 #include "percale/mesh_file.h"
 
 namespace percale {
@@ -32,6 +33,7 @@ class Reader {
  public:
   Reader(const fs::path& file, std::FILE* stream, std::uint64_t size) : file_(file), stream_(stream), size_(size) {}
 
+  const fs::path& file() const { return file_; }
   std::uint64_t size() const { return size_; }
   std::uint64_t position() const { return position_; }
   int line() const { return line_; }
@@ -189,45 +191,22 @@ bool Include(CacheInfo& info, bool& first, const Vec3& x) {
 }
 
 Result<CacheInfo> ReadPc2(Reader& reader) {
-  std::array<unsigned char, 32> header{};
-  if (!reader.Bytes(header.data(), header.size())) return reader.EndError("a PointCache2 header of 32 bytes");
-  if (std::memcmp(header.data(), "POINTCACHE2\0", 12) != 0) {
-    return reader.Error("expected a PointCache2 file, which starts with \"POINTCACHE2\"");
-  }
-  const auto int32 = [&](int at) {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(Number(&header[std::size_t(at)], 4)));
-  };
-  const std::int32_t version = int32(12), points = int32(16), samples = int32(28);
-  const double frameSeconds = Float(&header[24]);
-  if (version != 1) return reader.Error("expected PointCache2 of version 1, got version " + std::to_string(version));
-  if (points < 0) return reader.Error("expected a number of points >= 0, got " + std::to_string(points));
-  if (samples < 0) return reader.Error("expected a number of frames >= 0, got " + std::to_string(samples));
-  if (!std::isfinite(frameSeconds) || frameSeconds < 0) {
-    return reader.Error("expected a time between frames >= 0, got " + FormatNumber(frameSeconds));
-  }
-  // By division: the product of two lies may overflow.
-  const std::uint64_t payload = reader.size() - header.size(), all = payload / 12;
-  const bool empty = points == 0 || samples == 0;
-  const bool fits =
-      payload % 12 == 0 &&
-      (empty ? all == 0 : all % std::uint64_t(points) == 0 && all / std::uint64_t(points) == std::uint64_t(samples));
-  if (!fits) {
-    return reader.Error("expected " + std::to_string(samples) + " frames of " + std::to_string(points) +
-                        " points, 12 bytes each, after the header, got " + std::to_string(payload) +
-                        " bytes; it was cut short or damaged");
-  }
+  std::array<unsigned char, kPointCacheHeadBytes> bytes{};
+  if (!reader.Bytes(bytes.data(), bytes.size())) return reader.EndError("a PointCache2 header of 32 bytes");
+  const auto head = ParsePointCacheHead(bytes, reader.size(), PathText(reader.file()));
+  if (!head) return head.diagnostics();
 
   CacheInfo info;
   info.format = "PointCache2";
-  info.frames = samples;
-  info.vertices = points;
-  info.frameSeconds = frameSeconds;
+  info.frames = head->frames;
+  info.vertices = head->points;
+  info.frameSeconds = head->frameSeconds;
   bool first = true;
-  for (std::int32_t s = 0; s < samples; ++s) {
-    for (std::int32_t p = 0; p < points; ++p) {
-      std::array<unsigned char, 12> bytes{};
-      if (!reader.Bytes(bytes.data(), bytes.size())) return reader.EndError("more frames");
-      if (!Include(info, first, {Float(&bytes[0]), Float(&bytes[4]), Float(&bytes[8])})) {
+  for (std::int32_t s = 0; s < head->frames; ++s) {
+    for (std::int32_t p = 0; p < head->points; ++p) {
+      std::array<unsigned char, kPointCachePointBytes> point{};
+      if (!reader.Bytes(point.data(), point.size())) return reader.EndError("more frames");
+      if (!Include(info, first, PointCachePoint(point.data()))) {
         return reader.Error("frame " + std::to_string(s) + ", point " + std::to_string(p) +
                             ": expected numbers, got NaN or infinity");
       }

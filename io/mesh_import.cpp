@@ -369,6 +369,10 @@ class Importer {
 
 }  // namespace
 
+std::vector<Triangle> TrianglesOf(const PolygonSoup& soup, const MeshSource& source, MeshMessages& messages) {
+  return CutPolygons(soup, source, messages).triangles;
+}
+
 Result<RestMesh> LoadMesh(const fs::path& file, const MeshOptions& options) {
   if (auto problem = CheckOptions(PathText(file), options)) return *problem;
   auto source = MeshSource::Load(file);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "percale/diagnostic.h"
+#include "percale/mesh.h"
 #include "percale/vec3.h"
 
 namespace percale {
@@ -107,6 +108,9 @@ class MeshMessages {
 /// Read the formats; `scale` is in metres per unit of the file. Errors and warnings go to `messages`.
 PolygonSoup ReadObjPolygons(const MeshSource& source, double scale, MeshMessages& messages);
 PolygonSoup ReadPlyPolygons(const MeshSource& source, double scale, MeshMessages& messages);
+
+/// The polygons as triangles, in order; those of a convex one lie side by side. Warns of polygons of which they do not.
+std::vector<Triangle> TrianglesOf(const PolygonSoup& soup, const MeshSource& source, MeshMessages& messages);
 
 /// The number that a word is in whole, as C writes them ("1", "-.5", "2.", "1e-3", "+4"), to the bit and whatever the
 /// locale; infinity when it is too large.

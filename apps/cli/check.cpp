@@ -12,6 +12,7 @@ int Check(const Options& options) {
     std::printf("%s\n", SceneSchema().c_str());
     return kDone;
   }
+  if (options.intersections) return CheckIntersections(options);
   std::vector<std::string> files = options.files;
   if (files.empty()) files.emplace_back();  // the default scene
   int code = kDone;

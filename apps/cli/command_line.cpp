@@ -486,10 +486,18 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   builder.Threads(figures, "Output");
   builder.Progress(figures);
 
-  CLI::App& check = verb(Verb::Check, "Reports every problem of scene files",
-                         "  percale check scene/*.json\n"
-                         "  percale check --schema > percale.schema.json      for editors\n");
+  CLI::App& check =
+      verb(Verb::Check, "Reports every problem of scene files, or where cloth passes through cloth",
+           "  percale check scene/*.json\n"
+           "  percale check --schema > percale.schema.json      for editors\n"
+           "  percale check --intersections film.pc2 mesh.obj scene/layers.json\n"
+           "Intersections are looked for in the frames of .pc2 (with its mesh beside it), .obj and .ply;\n"
+           "name.obj stands for name_0001.obj and so on as well. Of a scene the start is judged, of a\n"
+           "checkpoint or picture the state in it. The test is exact: touching counts. The exit code is\n"
+           "1 if there are any.\n");
   builder.Scene(check, true);
+  check.add_flag("--intersections", builder.options().intersections,
+                 "Counts, frame by frame, the edges that pass through triangles");
   check.add_flag("--schema", builder.options().schema, "Prints the JSON schema of scene files, and ends");
 
   CLI::App& verify = verb(Verb::Verify, "Measures the fabric engine against closed forms of mechanics",

@@ -83,10 +83,11 @@ struct Options {
   std::vector<std::string> cases;  ///< verify --only, in the order of the list; empty: all.
   bool fine = false;               ///< verify --fine
 
-  bool schema = false;     ///< check --schema
-  std::string benchmark;   ///< bench NAME; empty: springs.
-  std::vector<int> sizes;  ///< bench --sizes
-  bool json = false;       ///< bench --json, verify --json
+  bool schema = false;         ///< check --schema
+  bool intersections = false;  ///< check --intersections
+  std::string benchmark;       ///< bench NAME; empty: springs.
+  std::vector<int> sizes;      ///< bench --sizes
+  bool json = false;           ///< bench --json, verify --json
 };
 
 /// Reads the command line, UTF-8, without the program's name. Help and version are printed to

@@ -13,6 +13,7 @@ int Render(const Options& options);
 int Replay(const Options& options);
 int Figures(const Options& options);
 int Check(const Options& options);
+int CheckIntersections(const Options& options);  ///< check --intersections
 int Verify(const Options& options);
 int Info(const Options& options);
 int Doctor(const Options& options);

@@ -49,6 +49,38 @@ class CacheWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Gives back, frame by frame, the triangles and positions that a file holds:
+///   .pc2        PointCache2; the mesh is FILE.obj beside it
+///   .obj  .ply  one mesh; where there is no such file, those numbered name_0001.obj, which must be alike
+/// A .csv has no triangles and cannot be read so.
+class CacheReader {
+ public:
+  /// Vertices and triangles of one cloth.
+  struct Cloth {
+    int vertices = 0;
+    std::vector<Triangle> triangles;
+  };
+
+  /// Opens a file of any program, or says why not.
+  static Result<CacheReader> Open(const std::filesystem::path& file);
+
+  ~CacheReader();
+  CacheReader(CacheReader&&) noexcept;
+  CacheReader& operator=(CacheReader&&) noexcept;
+
+  /// The cloths that were written to an .obj; one that has all vertices where the file does not tell them apart.
+  const std::vector<Cloth>& cloths() const;
+  int frames() const;  ///< >= 1.
+  /// Reads the positions of the next frame, cloth after cloth [m], and returns its number: in a .pc2 from 0, of a
+  /// numbered file the one in its name. To be called once per frame.
+  Result<int> Next(std::vector<Vec3>& positions);
+
+ private:
+  struct Impl;
+  explicit CacheReader(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
 /// What a cache or mesh file holds, for `percale info`.
 struct CacheInfo {
   std::string format;  ///< "PointCache2", "Wavefront OBJ", ...
