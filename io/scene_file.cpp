@@ -13,6 +13,7 @@
 #include "io/atomic_file.h"
 #include "io/json_document.h"
 #include "mesh/cloth_model.h"
+#include "mesh/collider_mesh.h"
 #include "percale/fabrics.h"
 #include "percale/mesh_file.h"
 #include "percale/parameters.h"
@@ -38,18 +39,38 @@ std::vector<std::string_view> SplitPath(std::string_view path) {
   return parts;
 }
 
-/// Whether the cloth has a mesh to read, and does not hold it yet.
-bool LacksMesh(const ClothSettings& cloth) {
+/// Whether the cloth or collider has a mesh to read, and does not hold it yet.
+bool HasToRead(const ClothSettings& cloth) {
   if (cloth.shape != Shape::Mesh || cloth.mesh.empty()) return false;
   return !cloth.loaded || cloth.loaded->file != cloth.mesh || cloth.loaded->options != MeshOptionsOf(cloth);
 }
+bool HasToRead(const ColliderSettings& collider) {
+  return !collider.mesh.empty() && LacksMesh(collider);
+}
 
-Status ReadMesh(const Scene& scene, ClothSettings& cloth) {
-  const MeshOptions options = MeshOptionsOf(cloth);
-  Result<RestMesh> mesh = LoadMesh(MeshFile(scene, cloth), options);
+/// What only colliders need done.
+Diagnostics Finish(const ClothSettings&, LoadedMesh&) {
+  return {};
+}
+Diagnostics Finish(const ColliderSettings&, LoadedMesh& loaded) {
+  loaded.openEdges = CountOpenEdges(loaded.mesh);
+  return TurnOutwards(loaded.mesh);
+}
+
+/// Of a cloth or a collider.
+Status ReadMesh(const Scene& scene, auto& settings) {
+  const MeshOptions options = MeshOptionsOf(settings);
+  const std::filesystem::path file = MeshFile(scene, settings.mesh);
+  Result<RestMesh> mesh = LoadMesh(file, options);
   if (!mesh) return mesh.diagnostics();
-  cloth.loaded = std::make_shared<const LoadedMesh>(LoadedMesh{cloth.mesh, options, std::move(*mesh)});
-  return {std::monostate{}, mesh.diagnostics()};
+  LoadedMesh loaded{settings.mesh, options, std::move(*mesh), 0};
+  Diagnostics warnings = mesh.diagnostics();
+  for (Diagnostic& warning : Finish(settings, loaded)) {
+    warning.place.file = PathText(file);
+    warnings.push_back(std::move(warning));
+  }
+  settings.loaded = std::make_shared<const LoadedMesh>(std::move(loaded));
+  return {std::monostate{}, std::move(warnings)};
 }
 
 /// Turns a document into a scene and collects everything that is wrong with it.
@@ -79,7 +100,10 @@ class SceneReader {
       ReadGroup(*group, member);
     }
     scene_.planesFirst = plane != 0 && sphere != 0 && plane < sphere;
-    if (scene_.simulation.engine == Engine::Fabric) ReadMeshes();
+    if (scene_.simulation.engine == Engine::Fabric) {
+      ReadMeshes("cloth", scene_.cloths);
+      ReadMeshes("collider", scene_.colliders);
+    }
     CheckWhole();
     return Finish();
   }
@@ -113,22 +137,20 @@ class SceneReader {
     if (!CheckValue(engine, value)) Choose(engine, scene_, 0, value);
   }
 
-  /// What is wrong with a mesh is told at its own place, and follows the messages of the scene.
-  void ReadMeshes() {
-    for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
-      ClothSettings& cloth = scene_.cloths[c];
-      const std::string index = std::to_string(c);
-      const bool known = std::none_of(std::begin(kMeshKeys), std::end(kMeshKeys), [&](const char* key) {
-        return failed_.count("/cloth/" + index + "/" + key) > 0;
-      });
-      if (!known || !LacksMesh(cloth)) continue;
-      const Status read = ReadMesh(scene_, cloth);
+  /// What is wrong with a mesh is told at its own place, and follows the messages of the scene. Of cloths or colliders.
+  void ReadMeshes(const std::string& group, auto& owners) {
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      const std::string index = std::to_string(i), object = "/" + group + "/" + index;
+      const bool known = std::none_of(std::begin(kMeshKeys), std::end(kMeshKeys),
+                                      [&](const char* key) { return failed_.count(object + "/" + key) > 0; });
+      if (!known || !HasToRead(owners[i])) continue;
+      const Status read = ReadMesh(scene_, owners[i]);
       meshMessages_.insert(meshMessages_.end(), read.diagnostics().begin(), read.diagnostics().end());
       if (read) continue;
-      const std::string_view parts[] = {"cloth", index, "mesh"};
+      const std::string_view parts[] = {group, index, "mesh"};
       auto [value, path] = Locate({std::begin(parts), std::end(parts)});
-      Error(value, path + ": " + Quote(cloth.mesh, 80) + " cannot be used; what is wrong with it follows");
-      failed_.insert("/cloth/" + index + "/mesh");
+      Error(value, path + ": " + Quote(owners[i].mesh, 80) + " cannot be used; what is wrong with it follows");
+      failed_.insert(object + "/mesh");
     }
   }
 
@@ -341,6 +363,8 @@ class SceneReader {
     if (severity != Severity::Error) return FailedBelow(object) || FailedBelow("/simulation");
     if (group == "/pin_motion" || group == "/patch" || group == "/tether")
       return FailedBelow(object) || FailedBelow("/cloth");
+    if (group == "/collider_motion") return FailedBelow(object) || failed_.count("/collider") > 0;
+    if (group == "/collider") return FailedBelow(object);
     if (group != "/cloth") return false;
     for (const char* name :
          {"/width", "/height", "/num_width_points", "/num_height_points", "/pinned", "/radius", "/rings"}) {
@@ -486,34 +510,44 @@ Result<Scene> ParseScene(const std::string& text, const std::string& name, Origi
   return ReadScene(JsonDocument::Parse(text, name), name, origins);
 }
 
-std::filesystem::path MeshFile(const Scene& scene, const ClothSettings& cloth) {
-  return TextPath(scene.name).parent_path() / TextPath(cloth.mesh);
+std::filesystem::path MeshFile(const Scene& scene, const std::string& mesh) {
+  return TextPath(scene.name).parent_path() / TextPath(mesh);
 }
 
 Status LoadMeshes(Scene& scene) {
   Diagnostics warnings;
   if (scene.simulation.engine != Engine::Fabric) return Ok();
-  for (ClothSettings& cloth : scene.cloths) {
-    if (!LacksMesh(cloth)) continue;
-    const Status read = ReadMesh(scene, cloth);
-    if (!read) return read.diagnostics();
-    warnings.insert(warnings.end(), read.diagnostics().begin(), read.diagnostics().end());
-  }
+  const auto readAll = [&](auto& owners) -> Status {
+    for (auto& owner : owners) {
+      if (!HasToRead(owner)) continue;
+      const Status read = ReadMesh(scene, owner);
+      if (!read) return read.diagnostics();
+      warnings.insert(warnings.end(), read.diagnostics().begin(), read.diagnostics().end());
+    }
+    return Ok();
+  };
+  if (Status read = readAll(scene.cloths); !read) return read;
+  if (Status read = readAll(scene.colliders); !read) return read;
   return {std::monostate{}, std::move(warnings)};
 }
 
 Scene WithAbsolutePaths(Scene scene) {
-  for (ClothSettings& cloth : scene.cloths) {
-    if (cloth.mesh.empty()) continue;
-    std::error_code error;
-    const std::filesystem::path file = std::filesystem::absolute(MeshFile(scene, cloth), error).lexically_normal();
-    if (error) continue;
-    cloth.mesh = PathText(file);
-    if (!cloth.loaded) continue;
-    LoadedMesh loaded = *cloth.loaded;
-    loaded.file = cloth.mesh;
-    cloth.loaded = std::make_shared<const LoadedMesh>(std::move(loaded));
-  }
+  const auto change = [&](auto& owners) {
+    for (auto& owner : owners) {
+      if (owner.mesh.empty()) continue;
+      std::error_code error;
+      const std::filesystem::path file =
+          std::filesystem::absolute(MeshFile(scene, owner.mesh), error).lexically_normal();
+      if (error) continue;
+      owner.mesh = PathText(file);
+      if (!owner.loaded) continue;
+      LoadedMesh loaded = *owner.loaded;
+      loaded.file = owner.mesh;
+      owner.loaded = std::make_shared<const LoadedMesh>(std::move(loaded));
+    }
+  };
+  change(scene.cloths);
+  change(scene.colliders);
   return scene;
 }
 

@@ -53,9 +53,10 @@ Result<Image> Painter::Paint(const World& world, const View& view) {
   return impl_->Paint(impl_->sceneView.Update(world, view, impl_->target->width(), impl_->target->height()));
 }
 
-Result<Image> Painter::Paint(const Scene& scene, std::span<const ClothShape> cloths, const View& view) {
+Result<Image> Painter::Paint(const Scene& scene, std::span<const ClothShape> cloths, const View& view, double time) {
   impl_->context.MakeCurrent();
-  return impl_->Paint(impl_->sceneView.Update(scene, cloths, view, impl_->target->width(), impl_->target->height()));
+  return impl_->Paint(
+      impl_->sceneView.Update(scene, cloths, view, impl_->target->width(), impl_->target->height(), {}, time));
 }
 
 ShaderLibrary& Painter::shaders() {

@@ -35,8 +35,8 @@ class Painter {
   /// The World as it stands. Fails when the shader is unknown or does not compile. Warnings (a
   /// missing texture) stand beside the first picture that they concern.
   Result<Image> Paint(const World& world, const View& view);
-  /// The same from copies of the positions.
-  Result<Image> Paint(const Scene& scene, std::span<const ClothShape> cloths, const View& view);
+  /// The same from copies of the positions, the colliders where they are at `time` [s].
+  Result<Image> Paint(const Scene& scene, std::span<const ClothShape> cloths, const View& view, double time = 0);
 
   ShaderLibrary& shaders();
   GlDevice& device();  ///< Its context is current until another painter draws.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "collide/poses.h"
 #include "render/heat_map.h"
 
 namespace percale {
@@ -85,6 +86,30 @@ struct Bounds {
   }
 };
 
+// A collider's mesh and what it was made of.
+struct ColliderMesh {
+  std::shared_ptr<DrawMesh> mesh;
+  ColliderSettings settings;
+  int latitudes = 0, longitudes = 0;
+  Vec3 low, high;  // Its box, in the collider's frame.
+};
+
+bool SameSurface(const ColliderSettings& a, const ColliderSettings& b) {
+  return a.shape == b.shape && a.size == b.size && a.radius == b.radius && a.length == b.length &&
+         a.tubeRadius == b.tubeRadius && a.loaded == b.loaded;
+}
+
+Mat4 ModelOf(const Pose& pose) {
+  Mat4 model;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) model(row, column) = pose.rotation(row, column);
+  }
+  model(0, 3) = pose.position.x;
+  model(1, 3) = pose.position.y;
+  model(2, 3) = pose.position.z;
+  return model;
+}
+
 // The box of positions, x y z each.
 Bounds BoundsOf(const std::vector<float>& positions) {
   float low[3] = {1e30f, 1e30f, 1e30f}, high[3] = {-1e30f, -1e30f, -1e30f};
@@ -119,6 +144,7 @@ struct SceneView::Impl {
   int sphereLatitudes = 0, sphereLongitudes = 0;
   std::vector<PlaneSettings> planeSettings;
   std::vector<std::shared_ptr<DrawMesh>> planes;
+  std::vector<ColliderMesh> colliders;
   std::shared_ptr<DrawMesh> background = std::make_shared<DrawMesh>(MakeSphereMesh(4, 8));
   std::vector<ClothShape> shapes;  // Of a World's cloths, while its list is made.
   HeatMap heatMap;
@@ -140,6 +166,19 @@ struct SceneView::Impl {
       if (planes[i] && planeSettings[i].point == now.point && planeSettings[i].normal == now.normal) continue;
       planes[i] = std::make_shared<DrawMesh>(MakePlaneMesh(now.point, now.normal));
       planeSettings[i] = now;
+    }
+    colliders.resize(scene.colliders.size());
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+      ColliderMesh& collider = colliders[i];
+      const ColliderSettings& now = scene.colliders[i];
+      if (collider.mesh && SameSurface(collider.settings, now) && collider.latitudes == latitudes &&
+          collider.longitudes == longitudes)
+        continue;
+      collider = {
+          std::make_shared<DrawMesh>(MakeColliderMesh(now, latitudes, longitudes)), now, latitudes, longitudes, {}, {}};
+      const Bounds box = BoundsOf(collider.mesh->positions);
+      collider.low = box.low;
+      collider.high = box.high;
     }
   }
 
@@ -178,11 +217,11 @@ const DrawList& SceneView::Update(const World& world, const View& view, int widt
     shapes.push_back({cloth.positions(), cloth.uv(), cloth.triangles(), cloth.springs(), cloth.rest(),
                       cloth.velocities(), cloth.pinned(), cloth.restLengths()});
   }
-  return Update(world.scene(), shapes, view, width, height, world.balls());
+  return Update(world.scene(), shapes, view, width, height, world.balls(), world.report().time);
 }
 
 const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape> cloths, const View& view, int width,
-                                  int height, std::span<const Ball> balls) {
+                                  int height, std::span<const Ball> balls, double time) {
   DrawList& list = impl_->list;
   list.viewProjection = view.camera.ViewProjection(width, height);
   list.cameraPosition = view.camera.position();
@@ -193,7 +232,7 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   list.shadowMapSize = view.shadowMapSize;
   list.items.clear();
 
-  const Color color = Times({1, 1, 1, 1}, view.look.color);
+  const Color color = Times(Color{1, 1, 1, 1}, view.look.color);
   const bool heat = view.cloths && view.heatMap.quantity != Quantity::None;
   const bool linesOnly = view.look.shader == "Wireframe" && !heat;
   Bounds casters;
@@ -240,12 +279,38 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
       const Vec3 extent{radius, radius, radius};
       casters.Add(centre - extent, centre + extent);
     };
-    for (const SphereSettings& s : scene.spheres) addSphere(s.origin, kDrawnSphereRadius * s.radius);
+    const double drawnRadius = scene.simulation.engine == Engine::Springs ? kDrawnSphereRadius : 1;
+    for (const SphereSettings& s : scene.spheres) addSphere(s.origin, drawnRadius * s.radius);
     for (const Ball& ball : balls) addSphere(ball.position, kDrawnSphereRadius * ball.radius);
     for (const std::shared_ptr<DrawMesh>& plane : impl_->planes) {
       // A sheet that lies on a plane has its springs in the plane, as far as depth can tell.
       list.items.push_back(
           {plane, DrawItem::Primitive::Triangles, view.look.shader, kPlaneColor, {}, view.wireframe, Surface::Plane});
+    }
+    for (std::size_t i = 0; i < impl_->colliders.size(); ++i) {
+      const ColliderSettings& settings = scene.colliders[i];
+      const ColliderMesh& collider = impl_->colliders[i];
+      if (collider.mesh->positions.empty()) continue;
+      const Pose pose = PoseOf(scene, static_cast<int>(i), time);
+      DrawItem item{collider.mesh, DrawItem::Primitive::Triangles, view.look.shader, color, ModelOf(pose), false};
+      item.backColor = Times(Color{1, 1, 1, 1}, settings.color);
+      if (settings.shape == ColliderShape::Plane) {
+        item.color = Times(kPlaneColor, settings.color);
+        item.surface = Surface::Plane;
+        item.pushBack = view.wireframe;
+        list.items.push_back(std::move(item));
+        continue;
+      }
+      item.color = Times(color, settings.color);
+      item.surface = Surface::Sphere;
+      item.castsShadow = true;
+      list.items.push_back(std::move(item));
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p =
+            ToWorld(pose, {corner & 1 ? collider.high.x : collider.low.x, corner & 2 ? collider.high.y : collider.low.y,
+                           corner & 4 ? collider.high.z : collider.low.z});
+        casters.Add(p, p);
+      }
     }
   }
   if (view.cloths && view.wireframe && !linesOnly) {

@@ -16,8 +16,8 @@
 
 namespace percale {
 
-/// Of a sphere's radius, what is drawn. Flat triangles cut corners: at its full radius the drawn cloth would
-/// dip into the drawn sphere.
+/// Of the radius of a ball, or of a sphere with Engine::Springs, what is drawn. Only points of cloth are kept out: at
+/// its full radius the flat triangles between them would dip into it.
 inline constexpr double kDrawnSphereRadius = 0.92;
 
 /// How to look at a scene.
@@ -28,7 +28,7 @@ struct View {
   int sphereLongitudes = 40;                      ///< >= 3: segments of a ring, the course's -o.
   bool wireframe = false;                         ///< Draw the springs over the surface as well.
   bool cloths = true;                             ///< Draw the cloths.
-  bool colliders = true;                          ///< Draw the spheres, planes and balls.
+  bool colliders = true;                          ///< Draw the spheres, planes, other colliders and balls.
   int shadowMapSize = 1024;                       ///< [pixel]; 0: no shadows. Used by shaders that draw shadows.
   HeatMapSettings heatMap;                        ///< Colours the cloths by a quantity, in place of the shader.
   Overlays overlays;                              ///< What else is drawn over them.
@@ -62,9 +62,10 @@ class SceneView {
 
   /// The draw list of a picture of that size [pixel, >= 1]. Valid until the next call.
   const DrawList& Update(const World& world, const View& view, int width, int height);
-  /// The same from copies, for a World that runs on another thread: `cloths` in the scene's order.
+  /// The same from copies, for a World that runs on another thread: `cloths` in the scene's order, the colliders where
+  /// they are at `time` [s].
   const DrawList& Update(const Scene& scene, std::span<const ClothShape> cloths, const View& view, int width,
-                         int height, std::span<const Ball> balls = {});
+                         int height, std::span<const Ball> balls = {}, double time = 0);
 
  private:
   struct Impl;
@@ -84,6 +85,10 @@ void ComputeTangents(std::span<const float> positions, std::span<const Vec2> uv,
 /// 0..1 from the north pole down, its seam at -z (away from the course's camera), tangents along
 /// growing longitude.
 DrawMesh MakeSphereMesh(int latitudes, int longitudes);
+
+/// A collider in its own frame, its curved surfaces as fine as a sphere of `latitudes` and `longitudes`. A mesh has its
+/// own triangles, with edges where they meet sharply; none while its file is not read.
+DrawMesh MakeColliderMesh(const ColliderSettings& collider, int latitudes, int longitudes);
 
 /// The square that stands for a plane: 4 m x 4 m around `point`, with uv 0..1.
 DrawMesh MakePlaneMesh(const Vec3& point, const Vec3& normal);

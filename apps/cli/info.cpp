@@ -118,7 +118,8 @@ void PrintScene(const Options& options, const Session& session) {
       PrintCloth(scene.cloths[i], i, scene.TimeStep());
   }
   if (!scene.patches.empty()) std::printf("patches            %zu\n", scene.patches.size());
-  std::printf("colliders          %zu spheres, %zu planes\n", scene.spheres.size(), scene.planes.size());
+  std::printf("colliders          %zu spheres, %zu planes, %zu of other shapes\n", scene.spheres.size(),
+              scene.planes.size(), scene.colliders.size());
   std::printf("pin motions        %zu\n", scene.pinMotions.size());
   std::printf(
       "wind               %s\n",

@@ -267,9 +267,9 @@ constexpr MouseHelp kMouse[] = {
     {"Left drag", "Turn the view"},
     {"Right drag, Ctrl + left drag", "Shift the view"},
     {"Wheel", "Nearer and farther"},
-    {"Shift + left drag", "Drag cloth, pin, sphere or plane"},
+    {"Shift + left drag", "Drag cloth, a pin or a collider"},
     {"Shift + click", "Pin the cloth, or let it go"},
-    {"Drag an arrow", "Move a sphere or plane along an axis"},
+    {"Drag an arrow", "Move a collider along an axis"},
     {"Drop a file", "Open a scene, checkpoint or picture; another PNG is a texture"},
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/viewer/session.h"
+#include "collide/poses.h"
 #include "percale/parameters.h"
 
 namespace percale::viewer {
@@ -44,6 +45,28 @@ std::optional<double> MeetSphere(const Ray& ray, const Vec3& centre, double radi
   return t > 0 ? std::optional(t) : std::nullopt;
 }
 
+/// Where the ray meets a solid, or a mesh, that is placed in the world.
+std::optional<double> MeetCollider(const Ray& ray, const ColliderSettings& collider, const Pose& pose) {
+  const Ray local{ToLocal(pose, ray.origin), TransposedTimes(pose.rotation, ray.direction)};
+  if (collider.shape == ColliderShape::Mesh) {
+    if (!collider.loaded) return std::nullopt;
+    const RestMesh& mesh = collider.loaded->mesh;
+    const auto hit = PickCloth(local, mesh.positions, mesh.triangles);
+    return hit ? std::optional(hit->distance) : std::nullopt;
+  }
+  // As far as the distance at each place is free (Hart 1996, "Sphere tracing").
+  constexpr int kMostSteps = 200;
+  constexpr double kTouch = 1e-5, kFarthest = 1e3;  // [m]
+  const Solid solid = MakeSolid(collider);
+  double t = 0;
+  for (int step = 0; step < kMostSteps && t < kFarthest; ++step) {
+    const double free = DistanceTo(solid, local.origin + local.direction * t).distance;
+    if (free < kTouch) return t > 0 ? std::optional(t) : std::nullopt;
+    t += free;
+  }
+  return std::nullopt;
+}
+
 /// How far along the line through `point` the ray comes nearest to it [m].
 double AlongLine(const Ray& ray, const Vec3& point, const Vec3& axis) {
   const double b = Dot(ray.direction, axis);
@@ -59,9 +82,48 @@ double DistanceToSegment(double x, double y, double ax, double ay, double bx, do
   return std::hypot(x - ax - t * dx, y - ay - t * dy);
 }
 
-const Vec3& PlaceOf(const ColliderRef& collider, const Scene& scene) {
+/// Whether it is an endless plane, by whichever key.
+bool IsPlane(const ColliderRef& collider, const Scene& scene) {
   const auto i = static_cast<std::size_t>(collider.index);
-  return collider.group == "sphere" ? scene.spheres[i].origin : scene.planes[i].point;
+  return collider.group == "plane" ||
+         (collider.group == "collider" && scene.colliders[i].shape == ColliderShape::Plane);
+}
+
+/// The normal of what IsPlane.
+Vec3 NormalOf(const ColliderRef& plane, const Session& session) {
+  const auto i = static_cast<std::size_t>(plane.index);
+  if (plane.group == "plane") return UnitOr(session.scene().planes[i].normal, {0, 1, 0});
+  return Times(PoseOf(session.scene(), plane.index, session.snapshot().report.time).rotation, {0, 1, 0});
+}
+
+/// Where it is in the picture, carried by its motions.
+Vec3 PlaceOf(const ColliderRef& collider, const Session& session) {
+  const Scene& scene = session.scene();
+  const auto i = static_cast<std::size_t>(collider.index);
+  if (collider.group == "sphere") return scene.spheres[i].origin;
+  if (collider.group == "plane") return scene.planes[i].point;
+  return PoseOf(scene, collider.index, session.snapshot().report.time).position;
+}
+
+/// The value of the parameter that puts it at `place` in the picture.
+Vec3 SettingOf(const ColliderRef& collider, const Session& session, const Vec3& place) {
+  if (collider.group != "collider") return place;
+  // Its motions turn and shift its position: a pose, which is undone.
+  const Scene& scene = session.scene();
+  Scene alone;
+  alone.colliders.resize(1);
+  for (const ColliderMotion& motion : scene.colliderMotions) {
+    if (motion.collider != collider.index) continue;
+    alone.colliderMotions.push_back(motion);
+    alone.colliderMotions.back().collider = 0;
+  }
+  const auto carried = [&](const Vec3& position) {
+    alone.colliders[0].position = position;
+    return PoseOf(alone, 0, session.snapshot().report.time).position;
+  };
+  const Vec3 origin = carried({}), way = place - origin;
+  return {Dot(way, carried({1, 0, 0}) - origin), Dot(way, carried({0, 1, 0}) - origin),
+          Dot(way, carried({0, 0, 1}) - origin)};
 }
 
 }  // namespace
@@ -75,7 +137,7 @@ std::optional<ColliderRef> Hand::Selected(const Session& session) const {
 std::optional<Gizmo> GizmoOf(const ColliderRef& collider, const Session& session, PictureSize size) {
   const OrbitCamera& camera = session.view().camera;
   Gizmo gizmo;
-  gizmo.centre = PlaceOf(collider, session.scene());
+  gizmo.centre = PlaceOf(collider, session);
   const double depth = Dot(gizmo.centre - camera.position(), UnitOr(camera.target() - camera.position(), {0, 0, -1}));
   if (depth <= 0.02) return std::nullopt;
   const double unitsPerMetre =
@@ -120,7 +182,7 @@ void Hand::Press(const InputEvent& event, PictureSize size, Session& session) {
   const bool isLeft = event.button == InputEvent::Button::Left;
   const Ray ray = PointerRay(session, event.x, event.y, size);
   if (const auto selected = Selected(session); isLeft && selected && axis_ >= 0) {
-    GripCollider(*selected, axis_, ray, PlaceOf(*selected, session.scene()), session);
+    GripCollider(*selected, axis_, ray, PlaceOf(*selected, session), session);
     return;
   }
   if (isLeft && event.shift) {
@@ -130,7 +192,7 @@ void Hand::Press(const InputEvent& event, PictureSize size, Session& session) {
   grip_ = !isLeft || event.control ? Grip::Pan : Grip::Orbit;
 }
 
-/// The nearest of what the pointer is over: cloth, sphere or plane.
+/// The nearest of what the pointer is over: cloth or collider.
 void Hand::PressOnThings(const Ray& ray, const InputEvent&, Session& session) {
   double nearest = std::numeric_limits<double>::infinity();
   const Snapshot& snapshot = session.snapshot();
@@ -158,10 +220,19 @@ void Hand::PressOnThings(const Ray& ray, const InputEvent&, Session& session) {
     if (const auto t = MeetSphere(ray, scene.spheres[i].origin, scene.spheres[i].radius))
       consider({"sphere", static_cast<int>(i)}, ray.origin + ray.direction * *t);
   }
-  for (std::size_t i = 0; i < scene.planes.size(); ++i) {
-    const PlaneSettings& plane = scene.planes[i];
-    const auto at = MeetPlane(ray, plane.point, UnitOr(plane.normal, {0, 1, 0}));
-    if (at && Length(*at - plane.point) <= kDrawnPlane * std::sqrt(2.0)) consider({"plane", static_cast<int>(i)}, *at);
+  const auto considerPlane = [&](const ColliderRef& plane) {
+    const Vec3 point = PlaceOf(plane, session);
+    const auto at = MeetPlane(ray, point, NormalOf(plane, session));
+    if (at && Length(*at - point) <= kDrawnPlane * std::sqrt(2.0)) consider(plane, *at);
+  };
+  for (std::size_t i = 0; i < scene.planes.size(); ++i) considerPlane({"plane", static_cast<int>(i)});
+  for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
+    const ColliderRef ref{"collider", static_cast<int>(i)};
+    if (IsPlane(ref, scene)) {
+      considerPlane(ref);
+    } else if (const auto t = MeetCollider(ray, scene.colliders[i], PoseOf(scene, ref.index, snapshot.report.time))) {
+      consider(ref, ray.origin + ray.direction * *t);
+    }
   }
   if (collider) {
     GripCollider(*collider, -1, ray, grabbed_, session);
@@ -177,7 +248,7 @@ void Hand::GripCollider(ColliderRef collider, int axis, const Ray& ray, const Ve
   session.HoldChanges(true);
   selected_ = collider;
   axis_ = axis;
-  held_ = PlaceOf(collider, session.scene());
+  held_ = PlaceOf(collider, session);
   grabbed_ = axis >= 0 ? held_ + kAxes[axis] * AlongLine(ray, held_, kAxes[axis]) : at;
   facing_ = UnitOr(session.view().camera.position() - session.view().camera.target(), {0, 0, 1});
 }
@@ -220,23 +291,23 @@ void Hand::Move(const InputEvent& event, PictureSize size, Session& session) {
   }
 }
 
-/// Along the axis of the gizmo; else a sphere in the plane of the picture, a plane along its normal.
+/// Along the axis of the gizmo; else in the plane of the picture, a plane along its normal.
 void Hand::MoveCollider(const Ray& ray, Session& session) {
   const auto selected = Selected(session);
   if (!selected) return;
-  const bool isPlane = selected->group == "plane";
   Vec3 place = held_;
   if (axis_ >= 0) {
     place += kAxes[axis_] * (AlongLine(ray, held_, kAxes[axis_]) - Dot(grabbed_ - held_, kAxes[axis_]));
-  } else if (isPlane) {
-    const Vec3 normal = UnitOr(session.scene().planes[static_cast<std::size_t>(selected->index)].normal, {0, 1, 0});
+  } else if (IsPlane(*selected, session.scene())) {
+    const Vec3 normal = NormalOf(*selected, session);
     place += normal * AlongLine(ray, grabbed_, normal);
   } else {
     const auto at = MeetPlane(ray, grabbed_, facing_);
     if (!at) return;
     place += *at - grabbed_;
   }
-  session.SetParameter(*FindParameter(selected->group, isPlane ? "point" : "origin"), selected->index, place);
+  const char* const name = selected->group == "sphere" ? "origin" : selected->group == "plane" ? "point" : "position";
+  session.SetParameter(*FindParameter(selected->group, name), selected->index, SettingOf(*selected, session, place));
 }
 
 void Hand::Release(Session& session) {

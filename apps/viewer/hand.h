@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What the mouse does in the picture: turn the view, drag the cloth, pin it, move spheres and planes.
+/// What the mouse does in the picture: turn the view, drag the cloth, pin it, move colliders.
 
 #include <optional>
 #include <string_view>
@@ -18,9 +18,9 @@ struct PictureSize {
   int width = 1, height = 1;
 };
 
-/// A sphere or plane of the scene.
+/// A sphere, plane or other collider of the scene.
 struct ColliderRef {
-  std::string_view group;  ///< "sphere" or "plane".
+  std::string_view group;  ///< "sphere", "plane" or "collider".
   int index = 0;
   friend bool operator==(const ColliderRef&, const ColliderRef&) = default;
 };
@@ -32,7 +32,7 @@ class Hand {
 
   /// Something is being dragged that can be undone.
   bool dragging() const { return grip_ == Grip::Cloth || grip_ == Grip::Collider; }
-  /// Which sphere or plane the gizmo is at, if it still exists.
+  /// Which collider the gizmo is at, if it still exists.
   std::optional<ColliderRef> Selected(const Session& session) const;
   void Deselect() { selected_.reset(); }
   /// The axis of the gizmo that is dragged or pointed at: 0 x, 1 y, 2 z; -1: none.

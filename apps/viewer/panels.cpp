@@ -22,7 +22,8 @@ bool HasFabric(const Session& session) {
   return session.scene().simulation.engine == Engine::Fabric;
 }
 bool HasColliders(const Session& session) {
-  return !session.scene().spheres.empty() || !session.scene().planes.empty();
+  const Scene& scene = session.scene();
+  return !scene.spheres.empty() || !scene.planes.empty() || !scene.colliders.empty();
 }
 
 constexpr Panel kPanels[] = {
@@ -36,7 +37,7 @@ constexpr Panel kPanels[] = {
     {"Scenes", false, DrawScenesPanel},
     {"Presets", false, DrawPresetsPanel},
     {"Collisions", false, DrawCollisionsPanel},
-    {"Spheres and planes", false, DrawCollidersPanel, HasColliders},
+    {"Colliders", false, DrawCollidersPanel, HasColliders},
     {"Wind", false, DrawWindPanel},
     {"Overlays", false, DrawOverlaysPanel},
     {"Statistics", true, DrawStatisticsPanel},

@@ -35,6 +35,14 @@ Diagnostics ApplyOptions(const ViewerOptions& options, const ViewFile& file, Sce
   return problems;
 }
 
+/// The files that the scene names for its cloths and colliders, or nothing for each that has none.
+std::vector<std::string> Meshes(const Scene& scene) {
+  std::vector<std::string> files;
+  for (const ClothSettings& cloth : scene.cloths) files.push_back(cloth.mesh);
+  for (const ColliderSettings& collider : scene.colliders) files.push_back(collider.mesh);
+  return files;
+}
+
 /// Without the path that it begins with.
 std::string_view WithoutPath(const Diagnostic& d) {
   return std::string_view(d.message).substr(std::min(d.message.find(": "), d.message.size()));
@@ -83,12 +91,7 @@ void SceneSource::Adopt(const fs::path& file, const Scene& scene) {
 }
 
 void SceneSource::Adopt(const Scene& scene) {
-  const auto meshes = [](const Scene& s) {
-    std::vector<std::string> files;
-    for (const ClothSettings& cloth : s.cloths) files.push_back(cloth.mesh);
-    return files;
-  };
-  const bool others = meshes(scene) != meshes(scene_);
+  const bool others = Meshes(scene) != Meshes(scene_);
   scene_ = scene;
   if (others) Watch();
 }
@@ -101,8 +104,8 @@ bool SceneSource::Changed() {
 
 void SceneSource::Watch() {
   watches_.assign(1, FileWatch(file_));
-  for (const ClothSettings& cloth : scene_.cloths) {
-    if (!cloth.mesh.empty()) watches_.emplace_back(MeshFile(scene_, cloth));
+  for (const std::string& mesh : Meshes(scene_)) {
+    if (!mesh.empty()) watches_.emplace_back(MeshFile(scene_, mesh));
   }
 }
 

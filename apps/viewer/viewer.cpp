@@ -318,7 +318,8 @@ class Viewer {
                          topology.pinned, topology.restLengths});
     }
     target->Bind();
-    const DrawList& list = sceneView_.Update(*state.scene, shapes_, order.view, size.width, size.height, state.balls);
+    const DrawList& list =
+        sceneView_.Update(*state.scene, shapes_, order.view, size.width, size.height, state.balls, state.report.time);
     if (const Status drawn = device_.Draw(list, size.width, size.height); !drawn)
       return session_.FailPicture(drawn.diagnostics());
     Image image = target->Read();
@@ -368,7 +369,8 @@ class Viewer {
       shapes_.push_back({cloth.positions, topology.uv, topology.triangles, topology.springs, topology.rest,
                          cloth.velocities, topology.pinned, topology.restLengths});
     }
-    const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows, snapshot.balls);
+    const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows, snapshot.balls,
+                                             snapshot.report.time);
     scale_ = list.heatScale;
     return device_.Draw(list, columns, rows);
   }

@@ -25,7 +25,7 @@ struct Handle {
   friend bool operator==(const Handle&, const Handle&) = default;
 };
 
-/// A ball that flies, falls, bounces off spheres and planes, and gives the cloth the momentum that it
+/// A ball that flies, falls, bounces off colliders, and gives the cloth the momentum that it
 /// loses.
 struct Ball {
   Vec3 position{};      ///< Of the centre [m].

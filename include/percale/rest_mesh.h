@@ -58,6 +58,7 @@ struct LoadedMesh {
   std::string file;  ///< As the settings name it.
   MeshOptions options;
   RestMesh mesh;
+  int openEdges = 0;  ///< Of a collider's mesh: edges of one triangle; 0: it is closed.
   friend bool operator==(const LoadedMesh&, const LoadedMesh&) = default;
 };
 

@@ -162,7 +162,7 @@ struct PinMotion {
   Vec3 displacement;              ///< [m]
   Vec3 axis{0, 1, 0};             ///< Not zero; need not have length 1.
   double angle = 0;               ///< About the axis, counter-clockwise seen from its tip; more than a turn [degree].
-  Vec3 centre;                    ///< A point of the axis [m].
+  Vec3 centre{};                  ///< A point of the axis [m].
   bool steady = false;            ///< At constant speed from start to end, not smoothly from rest to rest.
 };
 
@@ -175,7 +175,7 @@ struct ColliderMotion {
   Vec3 axis{0, 1, 0};     ///< Not zero; need not have length 1.
   double angle = 0;       ///< About the axis, counter-clockwise seen from its tip; more than a turn [degree].
   bool ownCentre = true;  ///< The axis runs through the collider's position; ignore `centre`.
-  Vec3 centre;            ///< A point of the axis [m].
+  Vec3 centre{};          ///< A point of the axis [m].
   bool steady = false;    ///< At constant speed from start to end, not smoothly from rest to rest.
 };
 

@@ -22,11 +22,11 @@ Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins = nu
 /// The same for a text in memory; `name` stands for the file in messages.
 Result<Scene> ParseScene(const std::string& text, const std::string& name, Origins* origins = nullptr);
 
-/// The file of a cloth's mesh: a path that is not absolute begins at the folder of `scene.name`.
-std::filesystem::path MeshFile(const Scene& scene, const ClothSettings& cloth);
+/// The file of a mesh that a cloth or collider names: a path that is not absolute begins at the folder of `scene.name`.
+std::filesystem::path MeshFile(const Scene& scene, const std::string& mesh);
 
-/// Reads the meshes that the cloths of shape Shape::Mesh name and do not hold yet with these settings. Changed
-/// settings need it before CheckScene accepts them.
+/// Reads the meshes that the cloths of shape Shape::Mesh, and such colliders, name and do not hold yet with these
+/// settings. Changed settings need it before CheckScene accepts them.
 Status LoadMeshes(Scene& scene);
 
 /// The scene with the paths of its meshes absolute, for a text that is kept elsewhere.

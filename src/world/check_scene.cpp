@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "mesh/cloth_model.h"
+#include "mesh/collider_mesh.h"
 #include "mesh/pins.h"
 #include "mesh/rest_mesh.h"
 #include "percale/parameters.h"
@@ -29,6 +30,8 @@ constexpr int kMostStepsPerFrame = 100000;
 constexpr std::size_t kLongestShaderName = 100;
 /// Of more pins not all pairs are compared.
 constexpr std::size_t kMostComparedPins = 500;
+/// At so many times of a motion that turns.
+constexpr int kPartsOfTurn = 8;
 /// Of a list of a million wrong pins nobody reads more.
 constexpr std::size_t kMostMessages = 10000;
 
@@ -49,11 +52,10 @@ class Checker {
     for (std::size_t t = 0; t < scene_.tethers.size(); ++t) CheckTether(t);
     for (std::size_t p = 0; p < scene_.planes.size(); ++p) CheckPlane(p);
     for (std::size_t m = 0; m < scene_.pinMotions.size(); ++m) CheckMotion(m);
+    for (std::size_t c = 0; c < scene_.colliders.size(); ++c) CheckCollider(c);
+    for (std::size_t m = 0; m < scene_.colliderMotions.size(); ++m) CheckColliderMotion(m);
     CheckShader();
-    if (scene_.simulation.engine == Engine::Fabric) {
-      WarnOfColliders();
-      if (!hasErrors_ && !scene_.pinMotions.empty()) WarnOfPinsApart();
-    }
+    if (scene_.simulation.engine == Engine::Fabric && !hasErrors_ && !scene_.pinMotions.empty()) WarnOfPinsApart();
     return std::move(diagnostics_);
   }
 
@@ -323,17 +325,59 @@ class Checker {
     }
   }
 
-  void WarnOfColliders() {
-    const char* const why = "the engine fabric does not collide yet: cloth passes through";
-    for (std::size_t s = 0; s < scene_.spheres.size(); ++s) Warn("/sphere/" + std::to_string(s), why);
-    for (std::size_t p = 0; p < scene_.planes.size(); ++p) Warn("/plane/" + std::to_string(p), why);
+  void CheckPlane(std::size_t p) {
+    CheckDirection("/plane/" + std::to_string(p) + "/normal", scene_.planes[p].normal, "[0, 1, 0] for a floor");
   }
 
-  void CheckPlane(std::size_t p) {
-    const Vec3& normal = scene_.planes[p].normal;
-    if (Length(normal) >= kShortestNormal) return;
-    Error("/plane/" + std::to_string(p) + "/normal",
-          "expected a direction, such as [0, 1, 0] for a floor, got " + FormatValue(normal) + ", which has none");
+  void CheckDirection(const std::string& path, const Vec3& direction, const std::string& example) {
+    if (Length(direction) >= kShortestNormal) return;
+    Error(path, "expected a direction, such as " + example + ", got " + FormatValue(direction) + ", which has none");
+  }
+
+  void CheckCollider(std::size_t c) {
+    const ColliderSettings& collider = scene_.colliders[c];
+    const std::string path = "/collider/" + std::to_string(c);
+    if (collider.shape == ColliderShape::Torus && collider.tubeRadius >= collider.radius) {
+      Error(path + "/tube_radius", "expected less than the radius of its ring, " + FormatNumber(collider.radius) +
+                                       " m, got " + FormatNumber(collider.tubeRadius) +
+                                       " m: the tube would run into itself; for a ball take the shape \"sphere\"");
+    }
+    if (scene_.simulation.engine != Engine::Fabric) {
+      Warn(path, "only the engine \"fabric\" heeds this");
+      return;
+    }
+    if (collider.shape != ColliderShape::Mesh) return;
+    if (collider.mesh.empty()) {
+      Error(path + "/mesh", "expected the file of a mesh, .obj or .ply, got none");
+    } else if (LacksMesh(collider)) {
+      Error(path + "/mesh", Quote(collider.mesh, 80) + " is not loaded with these settings; call LoadMeshes first");
+    } else if (const int open = collider.loaded->openEdges; open > 0 && !collider.twoSided) {
+      Warn(path + "/two_sided",
+           "the mesh is open: " + std::to_string(open) + (open == 1 ? " edge has" : " edges have") +
+               " one triangle only, so it has no inside, and cloth that comes from behind is drawn "
+               "through; set this to true, or close the mesh");
+    }
+  }
+
+  void CheckColliderMotion(std::size_t m) {
+    const ColliderMotion& motion = scene_.colliderMotions[m];
+    const std::string path = "/collider_motion/" + std::to_string(m);
+    CheckTimes(path, motion.start, motion.end);
+    if (motion.angle != 0) CheckDirection(path + "/axis", motion.axis, "[0, 1, 0] for the vertical");
+    const std::size_t colliders = scene_.colliders.size();
+    if (static_cast<std::size_t>(motion.collider) < colliders) return;
+    Error(path + "/collider",
+          colliders == 0
+              ? "there is no collider that could move; state a \"collider\": those of \"sphere\" and \"plane\" do not"
+              : "expected the index of a collider, " +
+                    (colliders == 1 ? "0 as there is only one" : "from 0 to " + std::to_string(colliders - 1)) +
+                    ", got " + std::to_string(motion.collider));
+  }
+
+  void CheckTimes(const std::string& path, double start, double end) {
+    if (end > start) return;
+    Error(path + "/end",
+          "expected a time after the start at " + FormatNumber(start) + " s, got " + FormatNumber(end) + " s");
   }
 
   void CheckTether(std::size_t t) {
@@ -354,10 +398,8 @@ class Checker {
   void CheckMotion(std::size_t m) {
     const PinMotion& motion = scene_.pinMotions[m];
     const std::string path = "/pin_motion/" + std::to_string(m);
-    if (!(motion.end > motion.start)) {
-      Error(path + "/end", "expected a time after the start at " + FormatNumber(motion.start) + " s, got " +
-                               FormatNumber(motion.end) + " s");
-    }
+    CheckTimes(path, motion.start, motion.end);
+    if (motion.angle != 0) CheckDirection(path + "/axis", motion.axis, "[0, 1, 0] for the vertical");
     if (!CheckClothIndex(path, motion.cloth)) return;
     const ClothSettings& cloth = scene_.cloths[static_cast<std::size_t>(motion.cloth)];
     const std::string whose = scene_.cloths.size() == 1 ? "of the cloth" : "of cloth " + std::to_string(motion.cloth);
@@ -394,7 +436,9 @@ class Checker {
         if (static_cast<std::size_t>(motion.cloth) != c) continue;
         alone.pinMotions.push_back(motion);
         alone.pinMotions.back().cloth = 0;
-        times.push_back(motion.end);
+        // What is turned may be farther off on the way.
+        const int parts = motion.angle != 0 ? kPartsOfTurn : 1;
+        for (int k = 1; k <= parts; ++k) times.push_back(motion.start + (motion.end - motion.start) * k / parts);
       }
       if (times.empty()) continue;
       const std::vector<Vec3> start = MakeClothMesh(cloth).positions;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "collide/poses.h"
 #include "core/text.h"
 
 namespace percale {
@@ -24,6 +25,21 @@ void Bounce(Ball& ball, const Vec3& normal, double depth, double friction) {
   ball.velocity = sliding * kept + normal * (impulse - approach);
 }
 
+/// Off a collider that is no mesh, as it moves in the step.
+void BounceOff(const Scene& scene, int collider, double time, double dt, Ball& ball) {
+  const ColliderSettings& settings = scene.colliders[static_cast<std::size_t>(collider)];
+  const Pose pose = PoseOf(scene, collider, time), before = PoseOf(scene, collider, time - dt);
+  const Vec3 local = ToLocal(pose, ball.position);
+  const SolidSample sample = DistanceTo(MakeSolid(settings), local);
+  const double depth = ball.radius - sample.distance;
+  if (!(depth > 0)) return;
+  const Vec3 foot = local - sample.normal * sample.distance;
+  const Vec3 velocity = (ToWorld(pose, foot) - ToWorld(before, foot)) / dt;
+  ball.velocity -= velocity;
+  Bounce(ball, Times(pose.rotation, sample.normal), depth, settings.friction);
+  ball.velocity += velocity;
+}
+
 std::optional<std::string> Positive(std::string_view name, double value, std::string_view unit) {
   if (std::isfinite(value) && value > 0) return std::nullopt;
   return std::string(name) + ": expected a number > 0 " + std::string(unit) + ", got " + FormatNumber(value);
@@ -37,7 +53,7 @@ std::optional<std::string> Finite(std::string_view name, const Vec3& v) {
 
 }  // namespace
 
-void MoveBalls(const Scene& scene, double dt, std::vector<Ball>& balls) {
+void MoveBalls(const Scene& scene, double time, double dt, std::vector<Ball>& balls) {
   for (Ball& ball : balls) {
     const Vec3 before = ball.position;
     ball.velocity += scene.simulation.gravity * dt;
@@ -52,6 +68,10 @@ void MoveBalls(const Scene& scene, double dt, std::vector<Ball>& balls) {
       if (Dot(before - plane.point, normal) < 0) normal = -normal;
       const double depth = ball.radius - Dot(ball.position - plane.point, normal);
       if (depth > 0) Bounce(ball, normal, depth, plane.friction);
+    }
+    if (scene.simulation.engine != Engine::Fabric) continue;
+    for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
+      if (scene.colliders[c].shape != ColliderShape::Mesh) BounceOff(scene, static_cast<int>(c), time, dt, ball);
     }
   }
   balls.erase(std::remove_if(balls.begin(), balls.end(),

@@ -250,7 +250,7 @@ const StepReport& World::Step() {
     ++report.step;
     report.time += dt;
     engine.moveColliders(state, report.time);
-    MoveBalls(*w.scene, dt, w.balls);
+    MoveBalls(*w.scene, report.time, dt, w.balls);
     clock.Finished(Stage::MoveColliders);
     if (w.forces && !w.AskForces()) break;
     const bool inBounds = engine.applyForces(state, report.time, w.gusts, w.handles);

@@ -148,5 +148,163 @@ TEST_CASE("A mesh that cannot be used is told at its own place and at the scene'
   CHECK_FALSE(Contains(problems, "a.obj:"));
 }
 
+/// A cube of 1 m at the origin, two triangles a side; the first `faces` sides of it.
+std::string Cube(bool insideOut, int faces = 6) {
+  std::string text;
+  for (int v = 0; v < 8; ++v)
+    text += "v " + std::to_string(v & 1) + " " + std::to_string(v >> 1 & 1) + " " + std::to_string(v >> 2 & 1) + "\n";
+  const int quads[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
+  for (int f = 0; f < faces; ++f) {
+    text += "f";
+    for (int k = 0; k < 4; ++k) text += " " + std::to_string(quads[f][insideOut ? 3 - k : k]);
+    text += "\n";
+  }
+  return text;
+}
+
+double VolumeOf(const RestMesh& mesh) {
+  double volume = 0;
+  const auto at = [&](std::int32_t v) { return mesh.positions[static_cast<std::size_t>(v)]; };
+  for (const Triangle& t : mesh.triangles) volume += Dot(at(t.a), Cross(at(t.b), at(t.c))) / 6;
+  return volume;
+}
+
+TEST_CASE("A collider brings its mesh along, closed at its seams and turned outwards") {
+  const Folder folder;
+  folder.Write("meshes/cube.obj", Cube(false));
+  folder.Write("meshes/in.obj", Cube(true));
+  folder.Write("meshes/open.obj", Cube(false, 5));
+  // Each side with corners of its own, as for a texture.
+  std::string seams;
+  const std::string cube = Cube(false);
+  for (int f = 0; f < 6; ++f) seams += cube.substr(0, cube.find('f'));
+  const int quads[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
+  for (int f = 0; f < 6; ++f) {
+    seams += "f";
+    for (const int v : quads[f]) seams += " " + std::to_string(v + 8 * f);
+    seams += "\n";
+  }
+  folder.Write("meshes/seams.obj", seams);
+  const auto load = [&](const std::string& collider) {
+    folder.Write("b.json",
+                 "{\"simulation\": {\"engine\": \"fabric\"}, \"cloth\": {},\n\"collider\":\n{\"shape\": \"mesh\", " +
+                     collider + "}}");
+    return LoadScene(folder.path / "b.json");
+  };
+  const auto text = [&](const std::string& collider) { return Format(load(collider).diagnostics()); };
+
+  const Result<Scene> scene = load("\"mesh\": \"meshes/cube.obj\", \"mesh_scale\": 2");
+  REQUIRE_MESSAGE(scene.ok(), Format(scene.diagnostics()));
+  CHECK(scene.diagnostics().empty());
+  CHECK(VolumeOf(scene->colliders[0].loaded->mesh) == doctest::Approx(8));
+  const Result<Scene> again = ParseScene(FormatScene(*scene), (folder.path / "c.json").string());
+  REQUIRE(again.ok());
+  CHECK(test::Same(*scene, *again));
+  CHECK(*again->colliders[0].loaded == *scene->colliders[0].loaded);
+  const Result<Scene> elsewhere = ParseScene(FormatScene(WithAbsolutePaths(*scene)), "no such folder/a.json");
+  REQUIRE_MESSAGE(elsewhere.ok(), Format(elsewhere.diagnostics()));
+  Scene changed = *scene;
+  changed.colliders[0].meshScale = 1;
+  CHECK(HasErrors(CheckScene(changed)));
+  REQUIRE(LoadMeshes(changed));
+  CHECK(CheckScene(changed).empty());
+  CHECK(EffectOf(*scene, changed) == Effect::Rebuild);
+
+  CHECK(load("\"mesh\": \"meshes/seams.obj\"").diagnostics().empty());
+  CHECK(load("\"mesh\": \"meshes/seams.obj\"")->colliders[0].loaded->openEdges == 0);
+
+  const Result<Scene> turned = load("\"mesh\": \"meshes/in.obj\"");
+  REQUIRE(turned.ok());
+  CHECK(VolumeOf(turned->colliders[0].loaded->mesh) == doctest::Approx(1));
+  INFO(Format(turned.diagnostics()));
+  CHECK(Contains(Format(turned.diagnostics()), "in.obj: warning: the mesh is inside out: its volume is -1 m^3"));
+
+  CHECK(Contains(text("\"mesh\": \"meshes/open.obj\""),
+                 "warning: /collider/two_sided: the mesh is open: 4 edges have one triangle only"));
+  CHECK(load("\"mesh\": \"meshes/open.obj\", \"two_sided\": true").diagnostics().empty());
+}
+
+TEST_CASE("Of pieces of a collider each is turned outwards, but for the wall of a hollow") {
+  const Folder folder;
+  const auto piece = [](bool insideOut, double scale, const Vec3& at) {
+    RestMesh mesh;
+    for (int v = 0; v < 8; ++v)
+      mesh.positions.push_back(at + scale * Vec3{double(v & 1), double(v >> 1 & 1), double(v >> 2 & 1)});
+    const int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    std::string out;
+    for (const Vec3& p : mesh.positions)
+      out += "v " + std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+    for (const auto& q : quads) {
+      out += "f";
+      for (int k = 0; k < 4; ++k) out += " " + std::to_string(q[insideOut ? 3 - k : k] - 8);
+      out += "\n";
+    }
+    return out;
+  };
+  folder.Write("meshes/three.obj",
+               piece(false, 1, {}) + piece(true, 0.5, {0.25, 0.25, 0.25}) + piece(true, 1, {3, 0, 0}));
+  folder.Write("b.json",
+               "{\"simulation\": {\"engine\": \"fabric\"}, \"cloth\": {}, \"collider\": {\"shape\": \"mesh\", "
+               "\"mesh\": \"meshes/three.obj\"}}");
+  const Result<Scene> scene = LoadScene(folder.path / "b.json");
+  REQUIRE_MESSAGE(scene.ok(), Format(scene.diagnostics()));
+  CHECK(VolumeOf(scene->colliders[0].loaded->mesh) == doctest::Approx(1 - 0.125 + 1));
+  REQUIRE(scene.diagnostics().size() == 1);
+  CHECK(Contains(Format(scene.diagnostics()), "piece 2 of the mesh is inside out: its volume is -1 m^3"));
+}
+
+TEST_CASE("What is wrong with a collider is told at its place") {
+  const Folder folder;
+  folder.Write("meshes/bad.obj", "v 0 0 0\nv 1 x 0\nf 1 2 3\n");
+  const auto check = [&](const std::string& more, std::initializer_list<const char*> expected) {
+    const Result<Scene> scene = ParseScene("{\"simulation\": {\"engine\": \"fabric\"}, \"cloth\": {},\n" + more + "}",
+                                           (folder.path / "a.json").string());
+    CHECK_FALSE(scene.ok());
+    const std::string text = Format(scene.diagnostics());
+    for (const char* part : expected) CHECK_MESSAGE(Contains(text, part), std::string(part) << " in\n" << text);
+    CHECK_FALSE(Contains(text, "LoadMeshes"));
+  };
+  check("\"collider\": {\"shape\": \"mesh\", \"mesh\": \"meshes/bad.obj\"}",
+        {"a.json:2:39: error: /collider/mesh: \"meshes/bad.obj\" cannot be used", "bad.obj:2:"});
+  check("\"collider\": {\"shape\": \"mesh\", \"mesh\": \"none.obj\"}", {"there is no such file"});
+  check("\"collider\": {\"shape\": \"mesh\"}", {"a.json:2:13: error: /collider/mesh: expected the file of a mesh"});
+  check("\"collider\": {\"shape\": \"mesh\", \"mesh\": \"meshes/two.obj\", \"mesh_scale\": 0}",
+        {"/collider/mesh_scale: expected a number > 0 m, got 0"});
+  check("\"collider\": {\"shape\": \"ball\"}", {"a.json:2:23: error: /collider/shape: expected one of \"sphere\", "});
+  check("\"collider\": {\"size\": [1, 2]}",
+        {"/collider/size: expected an array of three numbers > 0 m, got an array of 2"});
+  check("\"collider\": [{}, {\"radius\": -1}]",
+        {"a.json:2:29: error: /collider/1/radius: expected a number > 0 m, got -1"});
+  check("\"collider\": {\"friction\": 11}", {"/collider/friction: expected a number from 0 to 10, got 11"});
+  check("\"collider\": {\"frictoin\": 1}", {"/collider/frictoin: unknown key (did you mean `friction`?)"});
+  check("\"collider\": 5", {"/collider: expected an object or an array of objects, got 5"});
+  check("\"collider\": {\"shape\": \"torus\", \"radius\": 0.1, \"tube_radius\": 0.1}",
+        {"a.json:2:62: error: /collider/tube_radius: expected less than the radius"});
+  check("\"collider_motion\": {\"end\": 1}", {"/collider_motion/collider: there is no collider that could move"});
+  check("\"collider\": {}, \"collider_motion\": [{\"end\": 1}, {\"collider\": 1, \"end\": 1}]",
+        {"a.json:2:62: error: /collider_motion/1/collider: expected the index of a collider, 0 as there is only one, "
+         "got 1"});
+  check("\"collider\": {}, \"collider_motion\": {\"start\": 2, \"end\": 1}",
+        {"a.json:2:56: error: /collider_motion/end: expected a time after the start at 2 s, got 1 s"});
+  check("\"collider\": {}, \"collider_motion\": {\"start\": 2}", {"/collider_motion/end: this key is missing"});
+  check("\"collider\": {}, \"collider_motion\": {\"end\": 1, \"angle\": 9, \"axis\": [0, 0, 0]}",
+        {"/collider_motion/axis: expected a direction"});
+}
+
+TEST_CASE("A motion's centre is the collider's own unless one is stated") {
+  const auto own = [](const std::string& keys) {
+    const Result<Scene> scene = ParseScene(
+        "{\"simulation\": {\"engine\": \"fabric\"}, \"cloth\": {}, \"collider\": {}, \"collider_motion\": {\"end\": 1" +
+            keys + "}}",
+        "test");
+    REQUIRE_MESSAGE(scene.ok(), Format(scene.diagnostics()));
+    return scene->colliderMotions[0].ownCentre;
+  };
+  CHECK(own(""));
+  CHECK_FALSE(own(", \"centre\": [0, 0, 0]"));
+  CHECK(own(", \"own_centre\": true, \"centre\": [0, 0, 0]"));
+  CHECK_FALSE(own(", \"own_centre\": false"));
+}
+
 }  // namespace
 }  // namespace percale

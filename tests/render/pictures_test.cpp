@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
 #include "tests/render/render_fixture.h"
 
 using namespace percale;
+using percale::test::CheckReference;
 using percale::test::Must;
 using percale::test::TemporaryFolder;
 using percale::test::TestCloth;
@@ -94,31 +94,13 @@ struct LitSphere {
 TEST_CASE("every shader draws its reference picture") {
   ReferenceScene reference;
   const std::filesystem::path folder = "tests/render/reference";
-  const bool update = std::getenv("PERCALE_UPDATE_REFERENCE") != nullptr;
   Painter painter = Must(Painter::Open({.root = ".", .width = kWidth, .height = kHeight, .samples = 4}));
   for (const std::string& name : painter.shaders().names()) {
     CAPTURE(name);
     reference.view.look.shader = name;
     const std::vector<ClothShape> cloths = {reference.cloth.Shape()};
     const Image image = Must(painter.Paint(reference.scene, cloths, reference.view));
-    const std::filesystem::path file = folder / (name + ".png");
-    if (update) Must(WritePng(file, image, {.level = 9, .text = {}}));
-    const Image expected = Must(ReadPng(file));
-    REQUIRE(expected.width == kWidth);
-    REQUIRE(expected.height == kHeight);
-    // Drivers differ by rounding everywhere, and by much at a few edges.
-    double sum = 0;
-    int far = 0;
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-      int greatest = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        greatest = std::max(greatest, std::abs(int(image.rgba[i + k]) - int(expected.rgba[i + k])));
-      sum += greatest;
-      far += greatest > 24;
-    }
-    const double pixels = double(kWidth) * kHeight;
-    CHECK(sum / pixels < 1.5);
-    CHECK(far / pixels < 0.01);
+    CheckReference(image, folder / (name + ".png"));
   }
 }
 

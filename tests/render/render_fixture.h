@@ -4,8 +4,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -80,6 +82,27 @@ T Must(Result<T> result) {
   INFO(Format(result.diagnostics()));
   REQUIRE(result.ok());
   return std::move(*result);
+}
+
+/// Compares a picture with the one in `file`; with PERCALE_UPDATE_REFERENCE in the environment, writes that first.
+inline void CheckReference(const Image& image, const std::filesystem::path& file) {
+  if (std::getenv("PERCALE_UPDATE_REFERENCE")) Must(WritePng(file, image, {.level = 9, .text = {}}));
+  const Image expected = Must(ReadPng(file));
+  REQUIRE(expected.width == image.width);
+  REQUIRE(expected.height == image.height);
+  // Drivers differ by rounding everywhere, and by much at a few edges.
+  double sum = 0;
+  int far = 0;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    int greatest = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      greatest = std::max(greatest, std::abs(int(image.rgba[i + k]) - int(expected.rgba[i + k])));
+    sum += greatest;
+    far += greatest > 24;
+  }
+  const double pixels = double(image.width) * image.height;
+  CHECK(sum / pixels < 1.5);
+  CHECK(far / pixels < 0.01);
 }
 
 inline bool Contains(const Diagnostics& diagnostics, const std::string& text) {

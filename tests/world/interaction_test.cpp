@@ -315,6 +315,28 @@ TEST_CASE("a ball bounces off a sphere, flies away, and is dropped") {
   CHECK(world.balls().empty());
 }
 
+TEST_CASE("a ball bounces off a box that comes towards it by as much more") {
+  Scene scene = SmallScene(2, 2);
+  scene.simulation.engine = Engine::Fabric;
+  scene.cloths[0].origin = {10, 10, 10};
+  scene.simulation.gravity = {};
+  scene.colliders.resize(1);
+  scene.colliders[0].shape = ColliderShape::Box;
+  scene.colliders[0].size = {1, 2, 2};
+  scene.colliders[0].friction = 0;
+  for (const double speed : {0.0, 3.0}) {
+    scene.colliderMotions.resize(1);
+    scene.colliderMotions[0].displacement = {10 * speed, 0, 0};
+    scene.colliderMotions[0].end = 10;
+    scene.colliderMotions[0].steady = true;
+    World world(scene);
+    world.AddBall({{2, 0.1, 0}, {-8, 0, 0}, 0.1, 1});
+    Run(world, 20);
+    CHECK(world.balls()[0].velocity.x == doctest::Approx(speed + 0.5 * (8 + speed)));
+    CHECK(world.balls()[0].velocity.y == doctest::Approx(0));
+  }
+}
+
 TEST_CASE("a gust acts while it lasts, and by its drag") {
   Scene scene = FloatingScene();
   World calm(scene), windy(scene);

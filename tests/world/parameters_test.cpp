@@ -110,9 +110,10 @@ TEST_CASE("Only what keeps the grid and its start the same acts on a running clo
       "mesh",          "mesh_scale", "rest_shape", "metres_per_uv",    "weld",
       "weld_distance", "rotation",   "warp_angle", "bending_law"};
   for (const Parameter& p : Parameters()) {
-    const bool expected = (p.group == "cloth" && rebuild.count(p.name) > 0) || p.name == "engine";
+    const bool isOther = p.group == "collider" && (p.name == "shape" || p.name == "mesh" || p.name == "mesh_scale");
+    const bool expected = (p.group == "cloth" && rebuild.count(p.name) > 0) || isOther || p.name == "engine";
     CHECK_MESSAGE((p.effect == Effect::Rebuild) == expected, p.name);
-    const bool isView = p.group == "camera" || p.group == "look";
+    const bool isView = p.group == "camera" || p.group == "look" || (p.group == "collider" && p.name == "color");
     CHECK_MESSAGE((p.effect == Effect::View) == isView, p.name);
   }
 }
@@ -296,10 +297,13 @@ TEST_CASE("A wrong assignment changes nothing and says why") {
 TEST_CASE("A scene of sensible settings has nothing wrong with it") {
   Scene scene = OneOfEach();
   scene.spheres[0].origin = {0, 1, 0};
-  REQUIRE(CheckScene(scene).size() == 2);
+  REQUIRE(CheckScene(scene).size() == 3);
   CHECK(Mentions(CheckScene(scene), Severity::Warning, "/patch/0: only the engine \"fabric\" heeds this"));
   CHECK(Mentions(CheckScene(scene), Severity::Warning, "/tether/0: only the engine \"fabric\" heeds this"));
+  CHECK(Mentions(CheckScene(scene), Severity::Warning, "/collider/0: only the engine \"fabric\" heeds this"));
   scene.patches.clear();
+  scene.colliders.clear();
+  scene.colliderMotions.clear();
   scene.tethers.clear();
   CHECK(CheckScene(scene).empty());
 }
@@ -351,6 +355,27 @@ TEST_CASE("What concerns several values is found") {
   check([](Scene& s) { s.pinMotions[0].end = s.pinMotions[0].start = 2; }, kError,
         "/pin_motion/0/end: expected a time after");
   check([](Scene& s) { s.cloths[0].pinned.clear(); }, kError, "/pin_motion/0: there is no pin");
+  check([](Scene& s) { s.pinMotions[0].angle = 90, s.pinMotions[0].axis = {}; }, kError,
+        "/pin_motion/0/axis: expected a direction");
+  check([](Scene& s) { s.colliders[0].shape = ColliderShape::Torus, s.colliders[0].tubeRadius = 0.2; }, kError,
+        "/collider/0/tube_radius: expected less than the radius of its ring, 0.2 m, got 0.2 m");
+  check(
+      [](Scene& s) {
+        s.colliders[0].size = {1, 0, 1};
+      },
+      kError, "/collider/0/size: expected an array of three numbers > 0");
+  check([](Scene& s) { s.colliders[0].meshScale = 0; }, kError, "/collider/0/mesh_scale: expected a number > 0");
+  check([](Scene& s) { s.colliderMotions[0].collider = 3; }, kError,
+        "/collider_motion/0/collider: expected the index of a collider, 0 as there is only one, got 3");
+  check([](Scene& s) { s.colliders.clear(); }, kError,
+        "/collider_motion/0/collider: there is no collider that could move");
+  check([](Scene& s) { s.colliderMotions[0].end = s.colliderMotions[0].start = 2; }, kError,
+        "/collider_motion/0/end: expected a time after the start at 2 s, got 2 s");
+  check(
+      [](Scene& s) {
+        s.colliderMotions[0].angle = 90, s.colliderMotions[0].axis = {0, 1e-20, 0};
+      },
+      kError, "/collider_motion/0/axis: expected a direction, such as [0, 1, 0]");
   check([](Scene& s) { s.cloths[0].width = 1e-12; }, kError, "/cloth/0/width: expected a spacing");
   check([](Scene& s) { s.cloths[0].numWidthPoints = s.cloths[0].numHeightPoints = 1000000; }, kError,
         "got 1000000000000, of which this cloth has 1000000 x 1000000");

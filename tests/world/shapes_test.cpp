@@ -343,14 +343,37 @@ TEST_CASE("What a shape does not have is refused, with what it has") {
       "/patch/0/rectangle/1: expected a point of the grid, from [0, 0] to [10, 8], got [0, 9]");
 }
 
-TEST_CASE("Colliders in a scene of fabric are warned of") {
+TEST_CASE("A scene of fabric may have colliders of any shape") {
   Scene scene = Fabric(Shape::Disc);
   scene.spheres.resize(1);
   scene.planes.resize(2);
-  const Diagnostics found = CheckScene(scene);
-  CHECK_FALSE(HasErrors(found));
-  REQUIRE(found.size() == 3);
-  CHECK(Contains(Format(found), "/plane/1: the engine fabric does not collide yet"));
+  scene.colliders.resize(7);
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c) scene.colliders[c].shape = static_cast<ColliderShape>(c);
+  scene.colliderMotions.resize(2);
+  scene.colliderMotions[1].collider = 6;
+  CHECK(CheckScene(scene).empty());
+  // As many as there were, and what they are, is built in; where they are is not.
+  Scene moved = scene;
+  moved.colliders[3].position.x = 5;
+  moved.colliders[2].size.y = 1;
+  moved.colliderMotions[0].angle = 5000;
+  CHECK(EffectOf(scene, moved) == Effect::Live);
+  moved.colliders[2].shape = ColliderShape::Cone;
+  CHECK(EffectOf(scene, moved) == Effect::Rebuild);
+  moved = scene;
+  moved.colliders[0].color = {1, 0, 0};
+  CHECK(EffectOf(scene, moved) == Effect::View);
+}
+
+TEST_CASE("Who states a centre does not want the collider's own, unless they say so") {
+  Scene scene = Fabric(Shape::Disc);
+  scene.colliders.resize(1);
+  scene.colliderMotions.resize(1);
+  REQUIRE(ApplyAssignment(scene, "collider_motion.centre=[0,1,0]").ok());
+  CHECK_FALSE(scene.colliderMotions[0].ownCentre);
+  REQUIRE(ApplyAssignment(scene, "collider_motion.own_centre=true").ok());
+  CHECK(scene.colliderMotions[0].ownCentre);
+  CHECK(scene.colliderMotions[0].centre == Vec3{0, 1, 0});
 }
 
 }  // namespace

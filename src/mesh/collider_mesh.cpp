@@ -1,0 +1,102 @@
+#include "mesh/collider_mesh.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/text.h"
+#include "mesh/topology.h"
+
+namespace percale {
+namespace {
+
+constexpr double kRounding = 1e-9;  // Generously, of a volume: 0.999999 is told as 1.
+
+std::size_t Z(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Triangles that hang together by their vertices.
+struct Piece {
+  bool open = false;
+  double volume = 0;  ///< [m^3]; negative where the triangles face inwards.
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+
+  void Add(const Vec3& p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  bool Within(const Piece& other) const {
+    return other.low.x < low.x && other.low.y < low.y && other.low.z < low.z && high.x < other.high.x &&
+           high.y < other.high.y && high.z < other.high.z;
+  }
+};
+
+std::vector<Piece> FindPieces(const RestMesh& mesh, const Topology& topology) {
+  std::vector<Piece> pieces(static_cast<std::size_t>(topology.componentCount));
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (topology.component[v] >= 0) pieces[Z(topology.component[v])].Add(mesh.positions[v]);
+  }
+  for (const Triangle& t : mesh.triangles) {
+    Piece& piece = pieces[Z(topology.component[Z(t.a)])];
+    // Of the tetrahedra over the triangles with a tip near them, so that little is lost by rounding.
+    const Vec3 a = mesh.positions[Z(t.a)] - piece.low, b = mesh.positions[Z(t.b)] - piece.low,
+               c = mesh.positions[Z(t.c)] - piece.low;
+    piece.volume += Dot(a, Cross(b, c)) / 6;
+  }
+  for (const std::vector<std::int32_t>* edges : {&topology.boundaryEdges, &topology.nonManifoldEdges}) {
+    for (const std::int32_t e : *edges) pieces[Z(topology.component[Z(topology.edges[Z(e)].a)])].open = true;
+  }
+  return pieces;
+}
+
+}  // namespace
+
+MeshOptions MeshOptionsOf(const ColliderSettings& settings) {
+  MeshOptions options;
+  options.scale = settings.meshScale;
+  options.weld = true;
+  return options;
+}
+
+bool LacksMesh(const ColliderSettings& settings) {
+  if (settings.shape != ColliderShape::Mesh) return false;
+  const LoadedMesh* const loaded = settings.loaded.get();
+  return !loaded || loaded->file != settings.mesh || loaded->options != MeshOptionsOf(settings);
+}
+
+Diagnostics TurnOutwards(RestMesh& mesh) {
+  const Topology topology = BuildTopology(mesh.positions.size(), mesh.triangles);
+  const std::vector<Piece> pieces = FindPieces(mesh, topology);
+  std::vector<bool> turned(pieces.size());
+  Diagnostics warnings;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const Piece& piece = pieces[k];
+    if (piece.open || !(piece.volume < 0)) continue;
+    if (std::any_of(pieces.begin(), pieces.end(), [&](const Piece& other) { return piece.Within(other); })) continue;
+    turned[k] = true;
+    warnings.push_back(
+        MakeWarning((pieces.size() == 1 ? "the mesh is inside out: its volume is "
+                                        : "piece " + std::to_string(k) + " of the mesh is inside out: its volume is ") +
+                    FormatNumber(-RoundDown(-piece.volume * (1 + kRounding), 3)) +
+                    " m^3; its triangles are turned over, to face outwards; do so in the file as well"));
+  }
+  if (warnings.empty()) return warnings;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    Triangle& triangle = mesh.triangles[t];
+    if (!turned[Z(topology.component[Z(triangle.a)])]) continue;
+    std::swap(triangle.b, triangle.c);
+    std::swap(mesh.material[3 * t + 1], mesh.material[3 * t + 2]);
+    for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * t + k].y = -mesh.material[3 * t + k].y;
+  }
+  return warnings;
+}
+
+int CountOpenEdges(const RestMesh& mesh) {
+  return static_cast<int>(BuildTopology(mesh.positions.size(), mesh.triangles).boundaryEdges.size());
+}
+
+}  // namespace percale

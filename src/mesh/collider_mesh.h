@@ -1,0 +1,25 @@
+#pragma once
+/// \file
+/// Meshes as colliders: which side of them is outside.
+
+#include "percale/diagnostic.h"
+#include "percale/rest_mesh.h"
+#include "percale/scene.h"
+
+namespace percale {
+
+/// How the settings want their mesh read: seams closed, for what is solid has none.
+MeshOptions MeshOptionsOf(const ColliderSettings& settings);
+
+/// Whether the collider is a mesh that it does not hold with these settings.
+bool LacksMesh(const ColliderSettings& settings);
+
+/// Turns closed pieces over that are inside out, unless their box lies within that of another: then they may be the
+/// wall of a hollow. The triangles of a piece must face like their neighbours. Warns of what it turned, the warnings
+/// without a place.
+Diagnostics TurnOutwards(RestMesh& mesh);
+
+/// How many edges have one triangle only: 0 of a closed mesh.
+int CountOpenEdges(const RestMesh& mesh);
+
+}  // namespace percale
