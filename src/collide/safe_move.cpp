@@ -117,6 +117,11 @@ std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
   return failed;
 }
 
+void SafeMove::List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances) {
+  std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
+  Search({start, way, {}}, distances);
+}
+
 SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances,
                               std::span<double> share) {
   SafeMoveReport report;

@@ -45,7 +45,10 @@ class SafeMove {
   SafeMoveReport Move(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances,
                       std::span<double> share);
 
-  /// All that came near in the last move, and more.
+  /// Lists what is near a way that is gone already.
+  void List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances);
+
+  /// All that came near in the last move or on the last way listed, and more.
   std::span<const NearPair> vertexTriangle() const { return pairs_[0].list; }
   std::span<const NearPair> edgeEdge() const { return pairs_[1].list; }
   /// Forgets them.

@@ -41,7 +41,7 @@ void PlaceCloth(const FabricModel& model, int cloth, std::vector<Vec3>& place) {
   }
 }
 
-ContactMesh MakeContactMesh(const FabricModel& model) {
+ContactMesh MakeContactMesh(const FabricModel& model, const Obstacles& obstacles) {
   ContactMesh mesh;
   mesh.clothVertices = model.vertexCount;
   mesh.clothBodies = model.Cloths();
@@ -52,104 +52,177 @@ ContactMesh MakeContactMesh(const FabricModel& model) {
   }
   mesh.triangles = model.triangles;
   mesh.edges = BuildTopology(Index(model.vertexCount), model.triangles).edges;
+  obstacles.AddTo(mesh);
   return mesh;
+}
+
+/// The mean length of a cloth's edges [m].
+std::vector<double> MeanEdges(const ContactMesh& mesh) {
+  std::vector<double> length(Index(mesh.clothBodies), 0), count(length);
+  for (const Edge& edge : mesh.edges) {
+    const std::size_t body = Index(mesh.body[Index(edge.a)]);
+    if (body >= length.size()) break;  // obstacles come last
+    length[body] += Length(mesh.place[Index(edge.a)] - mesh.place[Index(edge.b)]);
+    ++count[body];
+  }
+  for (std::size_t c = 0; c < length.size(); ++c) length[c] /= std::max(count[c], 1.0);
+  return length;
 }
 
 }  // namespace
 
 ContactStep::ContactStep(const Scene& scene, const FabricModel& model, const Executor& executor)
-    : mesh_(MakeContactMesh(model)), safeMove_(mesh_, executor), contacts_(mesh_, executor) {
+    : model_(model),
+      executor_(executor),
+      obstacles_(scene),
+      mesh_(MakeContactMesh(model, obstacles_)),
+      safeMove_(mesh_, executor),
+      contacts_(mesh_, executor) {
   const std::size_t count = Index(mesh_.vertices());
   for (std::vector<Vec3>* vectors : {&begin_, &start_, &way_}) vectors->resize(count);
   share_.resize(count);
+  meetings_.resize(Index(mesh_.clothVertices));
+  for (std::vector<Vec3>* vectors : {&obstacleBefore_, &obstacle_, &obstacleTarget_})
+    vectors->resize(Index(obstacles_.vertices()));
   Configure(scene);
+  Restart(scene, 0);
 }
 
 void ContactStep::Configure(const Scene& scene) {
+  obstacles_.Configure(scene);
+  const std::vector<double> meanEdges = MeanEdges(mesh_);
   distances_.half.assign(Index(mesh_.bodies()), 0);
   distances_.clothPairs = scene.simulation.selfCollision;
   surfaces_.assign(Index(mesh_.bodies()), {});
-  std::vector<double> length(Index(mesh_.clothBodies), 0);
-  std::vector<std::int64_t> edges(Index(mesh_.clothBodies), 0);
-  for (const Edge& edge : mesh_.edges) {
-    const std::size_t body = Index(mesh_.body[Index(edge.a)]);
-    if (Index(mesh_.clothBodies) <= body) continue;
-    length[body] += Length(mesh_.place[Index(edge.a)] - mesh_.place[Index(edge.b)]);
-    ++edges[body];
-  }
-  for (std::size_t c = 0; c < Index(mesh_.clothBodies); ++c) {
+  double most = 0;
+  for (std::size_t c = 0; c < meanEdges.size(); ++c) {
     const ClothSettings& cloth = scene.cloths[c];
-    const double mean = edges[c] > 0 ? length[c] / static_cast<double>(edges[c]) : 0;
-    distances_.half[c] = 0.5 * (cloth.contactDistance > 0 ? cloth.contactDistance : kDistance * mean);
+    distances_.half[c] = 0.5 * (cloth.contactDistance > 0 ? cloth.contactDistance : kDistance * meanEdges[c]);
     surfaces_[c] = {.friction = cloth.friction};
+    most = std::max(most, distances_.half[c]);
   }
+  std::size_t body = meanEdges.size();
+  for (const Obstacle& obstacle : obstacles_.all()) {
+    const ColliderSettings& collider = scene.colliders[Index(obstacle.collider)];
+    distances_.half[body] = most + collider.thickness;
+    surfaces_[body++] = {.friction = collider.friction, .rulesFriction = true};
+  }
+  listed_ = false;
+}
+
+void ContactStep::Restart(const Scene& scene, double time) {
+  safeMove_.Clear();
+  contacts_.Clear();
+  ListSolids(scene, time, placed_);
+  solids_.clear();
+  for (const PlacedSolid& solid : placed_) solids_.push_back({solid, solid});
+  obstacles_.PlaceAt(scene, time, obstacle_);
+  obstacleBefore_ = obstacleTarget_ = obstacle_;
+  listed_ = false;
 }
 
 void ContactStep::MoveColliders(const Scene& scene, double time) {
   ListSolids(scene, time, placed_);
-  const bool known = solids_.size() == placed_.size();
+  const bool same = solids_.size() == placed_.size();
   solids_.resize(placed_.size());
   for (std::size_t s = 0; s < placed_.size(); ++s) {
     SolidStep& step = solids_[s];
-    step = {known ? step.end : placed_[s], placed_[s]};
+    step = {same ? step.end : placed_[s], placed_[s]};
     step.start.solid = step.end.solid;
+    step.start.thickness = step.end.thickness;
   }
+  obstacles_.PlaceAt(scene, time, obstacleTarget_);
 }
 
-void ContactStep::Clear() {
-  solids_.clear();
-  safeMove_.Clear();
-  contacts_.Clear();
+void ContactStep::Begin(std::span<const Vec3> previous, std::span<const Vec3> start) {
+  moves_ = 0;
+  if (listed_) return;
+  for (std::size_t v = 0; v < start.size(); ++v) start_[v] = previous[v], way_[v] = start[v] - previous[v];
+  for (std::size_t v = 0; v < obstacle_.size(); ++v) {
+    start_[start.size() + v] = obstacleBefore_[v];
+    way_[start.size() + v] = obstacle_[v] - obstacleBefore_[v];
+  }
+  safeMove_.List(start_, way_, distances_);
+  listed_ = true;
 }
 
-void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> start, std::span<const Vec3> ahead,
-                             std::span<const std::uint8_t> free, std::span<const double> mass, double h) {
-  for (std::size_t v = 0; v < start.size(); ++v) {
+void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> now, std::span<const Vec3> ahead,
+                             std::span<const std::uint8_t> free, double h) {
+  const std::size_t cloth = now.size();
+  for (std::size_t v = 0; v < cloth; ++v) {
     begin_[v] = begin[v];
-    start_[v] = start[v];
-    way_[v] = ahead[v] - start[v];
+    start_[v] = now[v];
+    way_[v] = ahead[v] - now[v];
+  }
+  for (std::size_t v = 0; v < obstacle_.size(); ++v) {
+    begin_[cloth + v] = start_[cloth + v] = obstacle_[v];
+    way_[cloth + v] = obstacleTarget_[v] - obstacle_[v];
   }
   contacts_.Begin(
-      {.begin = begin_, .start = start_, .way = way_, .free = free, .mass = mass, .h = h, .surfaces = surfaces_});
+      {.begin = begin_, .start = start_, .way = way_, .free = free, .mass = model_.mass, .h = h, .surfaces = surfaces_});
   contacts_.AddPairs(PairKind::VertexTriangle, safeMove_.vertexTriangle());
   contacts_.AddPairs(PairKind::EdgeEdge, safeMove_.edgeEdge());
   for (std::size_t s = 0; s < solids_.size(); ++s) {
     const ContactSurface surface{.friction = solids_[s].end.friction, .rulesFriction = true};
-    for (std::size_t v = 0; v < start.size(); ++v) {
-      if (!free[v]) continue;
-      const double distance = 2 * distances_.half[Index(mesh_.body[v])];
-      const SolidMeeting meeting = Meet(solids_[s], start[v], ahead[v], kLeastGap * distance, kSoon * distance);
+    const auto distanceOf = [&](std::size_t v) { return 2 * distances_.half[Index(mesh_.body[v])]; };
+    ForRange(executor_, cloth, [&](int vertex) {
+      const std::size_t v = Index(vertex);
+      meetings_[v].any = false;
+      if (!free[v]) return;
+      meetings_[v] = Meet(solids_[s], now[v], ahead[v], kLeastGap * distanceOf(v), kSoon * distanceOf(v));
+    });
+    for (std::size_t v = 0; v < cloth; ++v) {
+      const SolidMeeting& meeting = meetings_[v];
       if (!meeting.any) continue;
       // What is deep inside comes out in some steps.
-      const double deep = std::min(0.0, meeting.gap + kDeepest * distance);
+      const double deep = std::min(0.0, meeting.gap + kDeepest * distanceOf(v));
       const Vec3 in = meeting.normal * deep;
       contacts_.AddPlane({ContactKey::Kind::Shape, {static_cast<std::int32_t>(v), static_cast<std::int32_t>(s), 0, 0}},
-                         static_cast<std::int32_t>(v), meeting.gap - deep, distance, From<double>(meeting.normal),
+                         static_cast<std::int32_t>(v), meeting.gap - deep, distanceOf(v), From<double>(meeting.normal),
                          From<double>(meeting.point + in), From<double>(meeting.pointBefore + in), surface);
     }
   }
 }
 
-SafeMoveReport ContactStep::Move(std::span<const Vec3> start, std::span<Vec3> end) {
-  for (std::size_t v = 0; v < start.size(); ++v) {
-    start_[v] = start[v];
-    for (const SolidStep& solid : solids_)
-      end[v] = Outside(solid, start[v], end[v], kLeastGap * 2 * distances_.half[Index(mesh_.body[v])]);
-    way_[v] = end[v] - start[v];
+SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end) {
+  const std::size_t cloth = now.size();
+  ForRange(executor_, cloth, [&](int vertex) {
+    const std::size_t v = Index(vertex);
+    start_[v] = now[v];
+    const double least = kLeastGap * 2 * distances_.half[Index(mesh_.body[v])];
+    for (const SolidStep& solid : solids_) end[v] = Outside(solid, now[v], end[v], least);
+    way_[v] = end[v] - now[v];
+  });
+  for (std::size_t v = 0; v < obstacle_.size(); ++v) {
+    start_[cloth + v] = obstacle_[v];
+    way_[cloth + v] = obstacleTarget_[v] - obstacle_[v];
   }
   const SafeMoveReport report = safeMove_.Move(start_, way_, distances_, share_);
-  for (std::size_t v = 0; v < start.size(); ++v) {
-    if (share_[v] < 1) end[v] = start[v] + way_[v] * share_[v];
+  for (std::size_t v = 0; v < cloth; ++v) {
+    if (share_[v] < 1) end[v] = now[v] + way_[v] * share_[v];
   }
+  for (std::size_t v = 0; v < obstacle_.size(); ++v) {
+    const double share = share_[cloth + v];
+    if (moves_ == 0) obstacleBefore_[v] = obstacle_[v];
+    obstacle_[v] = share < 1 ? obstacle_[v] + way_[cloth + v] * share : obstacleTarget_[v];
+  }
+  // The list is that of the step's way only if all went it, and in one.
+  listed_ = report.cut == 0 && moves_ == 0;
+  ++moves_;
   return report;
 }
 
-std::int64_t ContactStep::CountInside(std::span<const Vec3> y) const {
-  std::int64_t inside = 0;
+void ContactStep::End(std::span<const Vec3> y) {
+  contacts_.End(y);
+}
+
+std::int64_t ContactStep::CountSqueezed(std::span<const Vec3> y) const {
+  std::int64_t count = 0;
   for (const SolidStep& solid : solids_) {
-    for (const Vec3& at : y) inside += DistanceTo(solid.end, at).distance < 0 ? 1 : 0;
+    for (const Vec3& at : y) count += DistanceTo(solid.end, at).distance < 0 ? 1 : 0;
   }
-  return inside;
+  for (std::size_t v = 0; v < obstacle_.size(); ++v) count += obstacle_[v] == obstacleTarget_[v] ? 0 : 1;
+  return count;
 }
 
 }  // namespace percale::fabric

@@ -1,12 +1,13 @@
 #pragma once
 /// \file
-/// Contact in one step of the engine: which planes the potential has, and how far cloth may go afterwards.
+/// Contact in the steps of the engine: which planes the potential of a step has, and how far all may go at its end.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "collide/contact_mesh.h"
+#include "collide/obstacles.h"
 #include "collide/safe_move.h"
 #include "collide/solid_path.h"
 #include "core/executor.h"
@@ -18,30 +19,41 @@ namespace percale::fabric {
 
 class ContactStep {
  public:
+  /// Both but the scene must outlive it.
   ContactStep(const Scene& scene, const FabricModel& model, const Executor& executor);
 
+  /// Whether Configure can take this scene, as its colliders have the same vertices.
+  bool Fits(const Scene& scene) const { return obstacles_.Fit(scene); }
   /// Takes settings for the same cloths.
   void Configure(const Scene& scene);
-  /// Forgets the past: positions are others than those that the last step left.
-  void Clear();
+  /// Forgets the past. Colliders are where they are at `time` [s].
+  void Restart(const Scene& scene, double time);
 
-  /// Puts colliders where they are at `time` [s], the end of the step.
+  // A step, in this order.
+  /// Leads colliders to where they are at `time` [s], the end of the step.
   void MoveColliders(const Scene& scene, double time);
-  /// Planes for a step from `start` that inertia would lead to `ahead`. `begin`: where the step began, which `start` is
-  /// later than in a second round.
-  void FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> start, std::span<const Vec3> ahead,
-                  std::span<const std::uint8_t> free, std::span<const double> mass, double h);
-  /// From start towards end as far as all can go: writes where to `end`. Returns what it took.
-  SafeMoveReport Move(std::span<const Vec3> start, std::span<Vec3> end);
+  /// Learns what is near: cloth came from `previous` to `start` in the last step.
+  void Begin(std::span<const Vec3> previous, std::span<const Vec3> start);
+  /// Planes for cloth that is at `now` and that inertia would lead to `ahead`. `begin`: where the step began, which is
+  /// before that in a second round.
+  void FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> now, std::span<const Vec3> ahead,
+                  std::span<const std::uint8_t> free, double h);
+  /// From now on towards `end` as far as all can go: writes where to. Returns what it took.
+  SafeMoveReport Move(std::span<const Vec3> now, std::span<Vec3> end);
   /// The step has ended at y.
-  void End(std::span<const Vec3> y) { contacts_.End(y); }
-  /// How many vertices are inside a solid: cloth that is squeezed yields to colliders, never to cloth.
-  std::int64_t CountInside(std::span<const Vec3> y) const;
+  void End(std::span<const Vec3> y);
+
+  /// How many vertices of cloth are inside of solids, and how many of obstacles wait for cloth to make way: what is
+  /// squeezed gives way to colliders, and they to it, but never cloth to cloth.
+  std::int64_t CountSqueezed(std::span<const Vec3> y) const;
 
   Contacts& contacts() { return contacts_; }
-  const ContactMesh& mesh() const { return mesh_; }
+  const Contacts& contacts() const { return contacts_; }
 
  private:
+  const FabricModel& model_;
+  const Executor& executor_;
+  Obstacles obstacles_;
   ContactMesh mesh_;
   SafeMove safeMove_;
   Contacts contacts_;
@@ -49,8 +61,14 @@ class ContactStep {
   std::vector<ContactSurface> surfaces_;  // per body
   std::vector<SolidStep> solids_;
   std::vector<PlacedSolid> placed_;
-  std::vector<Vec3> begin_, start_, way_;  // of the mesh
+  // Vertices of obstacles: a step ago, now, and where they are led.
+  std::vector<Vec3> obstacleBefore_, obstacle_, obstacleTarget_;
+  // Of the mesh, cloth and obstacles:
+  std::vector<Vec3> begin_, start_, way_;
   std::vector<double> share_;
+  std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid
+  bool listed_ = false;                 // What is near is known.
+  int moves_ = 0;                       // Of this step.
 };
 
 }  // namespace percale::fabric

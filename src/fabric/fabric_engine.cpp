@@ -35,8 +35,8 @@ FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes,
       scene_(scene),
       model_(BuildModel(scene, meshes)),
       solver_(model_, executor),
-      contact_(scene, model_, executor) {
-  solver_.objective().SetContacts(&contact_.contacts());
+      contact_(std::make_unique<ContactStep>(scene, model_, executor)) {
+  solver_.objective().SetContacts(&contact_->contacts());
   const std::size_t count = Index(model_.vertexCount);
   free_.assign(count, 1);
   position_ = previous_ = predicted_ = next_ = begin_ = model_.start;
@@ -47,7 +47,13 @@ FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes,
 void FabricEngine::Configure(const Scene& scene) {
   scene_ = scene;
   TakeMaterials(scene, model_);
-  contact_.Configure(scene);
+  if (contact_->Fits(scene)) {
+    contact_->Configure(scene);
+  } else {
+    contact_ = std::make_unique<ContactStep>(scene, model_, executor_);
+    contact_->Restart(scene, time_);
+    solver_.objective().SetContacts(&contact_->contacts());
+  }
   SetUp();
 }
 
@@ -91,8 +97,8 @@ void FabricEngine::UpdatePins() {
 void FabricEngine::Reset() {
   position_ = previous_ = predicted_ = model_.start;
   pins_.Reset([&](int v) { return model_.start[Index(v)]; });
-  contact_.Clear();
   time_ = 0;
+  contact_->Restart(scene_, time_);
   folds_.clear();
   StartFolds();
 }
@@ -100,7 +106,7 @@ void FabricEngine::Reset() {
 void FabricEngine::MoveColliders(double time) {
   time_ = time;
   pins_.MoveTo(time);
-  contact_.MoveColliders(scene_, time);
+  contact_->MoveColliders(scene_, time);
 }
 
 bool FabricEngine::ApplyForces(double time, std::span<const Gust> gusts, std::span<const Handle> handles) {
@@ -180,6 +186,7 @@ void FabricEngine::Hold(std::span<const Handle> handles) {
 }
 
 void FabricEngine::Solve() {
+  contact_->Begin(previous_, position_);
   // Inertia may lead into much strain: then the better start is where the cloth is.
   ForRange(executor_, position_.size(), [&](int v) {
     begin_[Index(v)] = next_[Index(v)] = position_[Index(v)];
@@ -189,7 +196,7 @@ void FabricEngine::Solve() {
   for (const Pin& pin : pins_.All()) {
     next_[Index(pin.point)] = ahead[Index(pin.point)] = predicted_[Index(pin.point)] = pin.target;
   }
-  contact_.FindPlanes(begin_, position_, ahead, free_, model_.mass, h_);
+  contact_->FindPlanes(begin_, position_, ahead, free_, h_);
   Objective& objective = solver_.objective();
   objective.Begin({.h = h_, .start = begin_, .predicted = predicted_, .loads = loads_, .free = free_});
   const double here = objective.Energy(next_);
@@ -211,17 +218,17 @@ void FabricEngine::Minimise(int iterations) {
 }
 
 void FabricEngine::Move() {
-  const SafeMoveReport first = contact_.Move(position_, next_);
+  const SafeMoveReport first = contact_->Move(position_, next_);
   if (static_cast<double>(first.cut) > kMostCut * static_cast<double>(position_.size())) {
     // What was met on the way has its plane now.
     position_ = next_;
-    contact_.FindPlanes(begin_, position_, position_, free_, model_.mass, h_);
+    contact_->FindPlanes(begin_, position_, position_, free_, h_);
     Minimise(kMoreIterations);
-    contact_.Move(position_, next_);
+    contact_->Move(position_, next_);
   }
   std::swap(position_, next_);
-  contact_.End(position_);
-  for (const Contact& contact : contact_.contacts().all()) {
+  contact_->End(position_);
+  for (const Contact& contact : contact_->contacts().all()) {
     if (!contact.active) continue;
     ++(contact.key.kind == ContactKey::Kind::Shape ? counts_.colliderContacts : counts_.selfContacts);
   }

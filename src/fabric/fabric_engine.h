@@ -4,6 +4,7 @@
 /// time, each the minimum of an incremental potential.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -83,7 +84,7 @@ class FabricEngine {
   Scene scene_;
   FabricModel model_;
   NewtonSolver solver_;
-  ContactStep contact_;
+  std::unique_ptr<ContactStep> contact_;
   double h_ = 0;     // of a step [s]
   double time_ = 0;  // of the last step [s]
   Pins pins_;
