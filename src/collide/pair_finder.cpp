@@ -10,6 +10,7 @@
 
 #include "collide/chunk_lists.h"
 #include "collide/clusters.h"
+#include "collide/flat_regions.h"
 #include "core/aligned.h"
 
 namespace percale {
@@ -102,7 +103,8 @@ struct PairFinder::Impl {
 
   void BoxVertices(const MeshMotion& motion, std::span<const double> reach);
   void BoxLeaves();
-  void SearchLeaves(bool clothPairs);
+  void ShapeLeaves();
+  void SearchLeaves(std::span<const double> reach, bool clothPairs);
   void BoxItems();
   void CompareItems();
 
@@ -118,6 +120,7 @@ struct PairFinder::Impl {
   const Executor& executor;
   const Kernels& kernels;
   const Clusters clusters;
+  const FlatRegions regions;
   const int leafBlocks;
   const int chunkBlocks;  // of one chunk
   const int chunks;
@@ -126,6 +129,7 @@ struct PairFinder::Impl {
   AlignedVector<BoxRow> rows;  // per vertex
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
+  std::vector<LeafShape> shapes;  // per leaf
   AlignedVector<BoxBlock> itemBoxes;
   std::vector<std::uint8_t> isTouched;  // per leaf: may have pairs
   ChunkLists<LeafPair> leafPairs;
@@ -138,10 +142,12 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       executor(e),
       kernels(k),
       clusters(MakeClusters(m)),
+      regions(MakeFlatRegions(m, clusters)),
       leafBlocks(Blocks(clusters.leaves())),
       chunkBlocks(std::max(kLeastChunkBlocks, (leafBlocks + kMostChunks - 1) / kMostChunks)),
       chunks((leafBlocks + chunkBlocks - 1) / chunkBlocks),
       rows(m.body.size()),
+      shapes(Index(clusters.clothLeaves)),
       isTouched(Index(clusters.leaves())),
       leafPairs(chunks),
       vertexTriangleLists(chunks),
@@ -200,17 +206,34 @@ void PairFinder::Impl::BoxLeaves() {
   }
 }
 
-void PairFinder::Impl::SearchLeaves(bool clothPairs) {
+void PairFinder::Impl::ShapeLeaves() {
+  ForBlocks([&](int begin, int end, int) {
+    kernels.leafShapes({.begin = begin * kLanes,
+                        .end = std::min(end * kLanes, clusters.clothLeaves),
+                        .triangleFirst = clusters.triangleFirst.data(),
+                        .corners = Corners(std::span<const Triangle>(clusters.triangles)),
+                        .vertexFirst = clusters.vertexFirst.data(),
+                        .vertices = clusters.vertices.data(),
+                        .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
+                        .greatestSlope = regions.greatestSlope.data(),
+                        .rows = rows.data(),
+                        .shapes = shapes.data()});
+  });
+}
+
+void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPairs) {
   leafPairs.Clear();
   ForBlocks([&](int begin, int end, int chunk) {
     const auto put = [&](const LeafPair* pairs, int count) {
-      while (count > 0) {
-        const std::span<LeafPair> room = leafPairs.Room(chunk);
-        const int some = std::min(count, static_cast<int>(room.size()));
-        std::copy_n(pairs, some, room.begin());
-        leafPairs.Add(chunk, some);
-        pairs += some;
-        count -= some;
+      for (int i = 0; i < count; ++i) {
+        const auto [a, b] = pairs[i];
+        const std::int32_t body = clusters.body[Index(a)];
+        if (body == clusters.body[Index(b)] &&
+            regions.AreApart(a, b, shapes, static_cast<float>(2 * reach[Index(body)] * (1 + 1e-6)))) {
+          continue;
+        }
+        leafPairs.Room(chunk)[0] = pairs[i];
+        leafPairs.Add(chunk, 1);
       }
     };
     kernels.search({.begin = begin,
@@ -301,7 +324,8 @@ void PairFinder::Find(const MeshMotion& motion, std::span<const double> reach, b
   if (s.clusters.clothLeaves == 0) return;
   s.BoxVertices(motion, reach);
   s.BoxLeaves();
-  s.SearchLeaves(clothPairs);
+  if (clothPairs) s.ShapeLeaves();
+  s.SearchLeaves(reach, clothPairs);
   s.BoxItems();
   s.CompareItems();
   s.vertexTriangle.Join(s.vertexTriangleLists, s.executor);
@@ -319,9 +343,10 @@ std::span<const VertexQuad> PairFinder::edgeEdge() const {
 std::size_t PairFinder::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   const Impl& s = *impl_;
-  std::size_t sum = s.clusters.MemoryBytes() + bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) +
-                    bytes(s.isTouched) + s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() +
-                    s.edgeEdgeLists.MemoryBytes() + s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
+  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.firstItemBlock) +
+                    bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.isTouched) + s.leafPairs.MemoryBytes() +
+                    s.vertexTriangleLists.MemoryBytes() + s.edgeEdgeLists.MemoryBytes() +
+                    s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
   for (const auto& level : s.levels) sum += bytes(level);
   return sum;
 }
