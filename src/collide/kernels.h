@@ -93,10 +93,10 @@ struct SearchArgs {
 struct LeafItems {
   const BoxBlock* leafBoxes;  ///< In which the leaf's is ...
   int lane;                   ///< ... here.
-  int edges, vertices, triangles;
-  const BoxBlock* edgeBoxes;
-  const BoxBlock* vertexBoxes;  ///< Of its own.
-  const BoxBlock* triangleBoxes;
+  int edges, triangles, vertices;
+  const BoxBlock* edgeBoxes;      ///< Blocks of edges, then of triangles.
+  const BoxBlock* triangleBoxes;  ///< Behind those of edges.
+  const BoxBlock* vertexBoxes;    ///< Of its own.
 };
 
 /// Pairs of items of two leaves a and b, each by its number in its leaf. Behind `most` there is room for whole blocks.
