@@ -159,6 +159,9 @@ Clusters MakeClusters(const ContactMesh& mesh) {
     clusters.edgeFirst.push_back(static_cast<std::int32_t>(clusters.edges.size()));
     clusters.triangleFirst.push_back(static_cast<std::int32_t>(clusters.triangles.size()));
     clusters.body.push_back(bodyOf(leaf[0]));
+    const bool hasOnlyTriangles =
+        std::all_of(leaf.begin(), leaf.end(), [](const Item& item) { return item.corners[2] >= 0; });
+    clusters.hasOnlyTriangles.push_back(hasOnlyTriangles ? 1 : 0);
     if (clusters.body.back() < mesh.clothBodies) ++clusters.clothLeaves;
   };
   for (auto begin = items.begin(); begin != items.end();) {
@@ -176,8 +179,8 @@ Clusters MakeClusters(const ContactMesh& mesh) {
 
 std::size_t Clusters::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  return bytes(body) + bytes(vertexFirst) + bytes(vertices) + bytes(ownVertices) + bytes(edgeFirst) + bytes(edges) +
-         bytes(triangleFirst) + bytes(triangles);
+  return bytes(body) + bytes(hasOnlyTriangles) + bytes(vertexFirst) + bytes(vertices) + bytes(ownVertices) +
+         bytes(edgeFirst) + bytes(edges) + bytes(triangleFirst) + bytes(triangles);
 }
 
 }  // namespace percale

@@ -16,8 +16,9 @@ namespace percale {
 struct Clusters {
   static constexpr int kLeafItems = 16;  ///< At most; so it has at most 48 vertices and 48 edges.
 
-  int clothLeaves = 0;                      ///< Leaves from here on are those of obstacles.
-  std::vector<std::int32_t> body;           ///< Per leaf, ascending.
+  int clothLeaves = 0;                         ///< Leaves from here on are those of obstacles.
+  std::vector<std::int32_t> body;              ///< Per leaf, ascending.
+  std::vector<std::uint8_t> hasOnlyTriangles;  ///< Per leaf: 0 where it has other items as well.
   std::vector<std::int32_t> vertexFirst;    ///< Leaf l has the vertices at [vertexFirst[l], vertexFirst[l + 1]) of ...
   std::vector<std::int32_t> vertices;       ///< ... these: first its own, then others of its triangles.
   std::vector<std::int32_t> ownVertices;    ///< Per leaf, how many are its own.

@@ -1,39 +1,67 @@
 // Which items of two leaves are near each other. Included by kernels_impl.h inside the namespace of an instruction set,
 // like everything there; never elsewhere.
 
-constexpr int kMostItems = 48;
-constexpr int kMostBlocks = kMostItems / kLanes;
+constexpr int kMostBlocks = (48 + 16) / kLanes;  // of edges and triangles
 
-/// Those of some items that may be near anything: as numbers, and as a set per block.
+inline int BlockCount(int items) {
+  return (items + kLanes - 1) / kLanes;
+}
+
+/// Those edges and triangles of a leaf that may be near anything: as numbers, the edges' before the triangles', counted
+/// in one row of blocks; and as a set per block.
 struct Chosen {
-  std::uint8_t numbers[kMostItems + kLanes];
+  std::uint8_t numbers[(kMostBlocks + 1) * kLanes];
   std::uint8_t sets[kMostBlocks];
-  int count = 0;
+  int edges, all;
 
   /// Those near a box.
-  Chosen(const BoxBlock* boxes, int items, OneBox box) {
-    for (int first = 0; first < items; first += kLanes) {
-      const unsigned near = EightBoxes(boxes[first / kLanes]).Near(box);
-      sets[first / kLanes] = static_cast<std::uint8_t>(near);
-      PutLanes(numbers + count, near, first);
+  Chosen(const LeafItems& items, OneBox box) {
+    const int edgeBlocks = BlockCount(items.edges), blocks = edgeBlocks + BlockCount(items.triangles);
+    int count = 0;
+    edges = 0;
+    for (int block = 0; block < blocks; ++block) {
+      const unsigned near = EightBoxes(items.edgeBoxes[block]).Near(box);
+      sets[block] = static_cast<std::uint8_t>(near);
+      PutLanes(numbers + count, near, block * kLanes);
       count += LaneCount(near);
+      edges = block < edgeBlocks ? count : edges;
     }
+    all = count;
   }
 };
 
-/// Pairs of some of a with some of b, whose items are so many. Returns how many.
-inline int NearPairs(const BoxBlock* a, const Chosen& someA, const BoxBlock* b, const Chosen& someB, int itemsB,
+/// Pairs of chosen edges. Returns how many.
+inline int NearEdges(const LeafItems& a, const Chosen& chosenA, const LeafItems& b, const Chosen& chosenB,
                      std::uint8_t* numberA, std::uint8_t* numberB) {
   int count = 0;
-  for (int first = 0; first < itemsB; first += kLanes) {
-    const unsigned set = someB.sets[first / kLanes];
+  for (int first = 0; first < b.edges; first += kLanes) {
+    const unsigned set = chosenB.sets[first / kLanes];
     if (set == 0) continue;
-    const EightBoxes boxes(b[first / kLanes]);
-    for (int k = 0; k < someA.count; ++k) {
-      const int i = someA.numbers[k];
-      const unsigned near = boxes.Near(BoxAt(a, i)) & set;
+    const EightBoxes boxes(b.edgeBoxes[first / kLanes]);
+    for (int k = 0; k < chosenA.edges; ++k) {
+      const int i = chosenA.numbers[k];
+      const unsigned near = boxes.Near(BoxAt(a.edgeBoxes, i)) & set;
       PutSame(numberA + count, i);
       PutLanes(numberB + count, near, first);
+      count += LaneCount(near);
+    }
+  }
+  return count;
+}
+
+/// Pairs of the vertices of one leaf with the chosen triangles of another. Returns how many.
+inline int NearTriangles(const LeafItems& ofVertices, const LeafItems& ofTriangles, const Chosen& chosen,
+                         std::uint8_t* vertex, std::uint8_t* triangle) {
+  int count = 0;
+  if (chosen.all == chosen.edges) return 0;
+  const int offset = BlockCount(ofTriangles.edges) * kLanes;
+  for (int first = 0; first < ofVertices.vertices; first += kLanes) {
+    const EightBoxes boxes(ofVertices.vertexBoxes[first / kLanes]);
+    for (int k = chosen.edges; k < chosen.all; ++k) {
+      const int i = chosen.numbers[k];
+      const unsigned near = boxes.Near(BoxAt(ofTriangles.edgeBoxes, i));
+      PutLanes(vertex + count, near, first);
+      PutSame(triangle + count, i - offset);
       count += LaneCount(near);
     }
   }
@@ -81,13 +109,8 @@ void FindNearItems(const LeafItems& a, const LeafItems& b, bool same, NearItems&
     out.triangleVertex = 0;
     return;
   }
-  const OneBox boxA = BoxAt(a.leafBoxes, a.lane), boxB = BoxAt(b.leafBoxes, b.lane);
-  const Chosen edgesA(a.edgeBoxes, a.edges, boxB), edgesB(b.edgeBoxes, b.edges, boxA);
-  out.edges = NearPairs(a.edgeBoxes, edgesA, b.edgeBoxes, edgesB, b.edges, out.edgeA, out.edgeB);
-  const Chosen verticesA(a.vertexBoxes, a.vertices, boxB), trianglesB(b.triangleBoxes, b.triangles, boxA);
-  out.vertexTriangle =
-      NearPairs(a.vertexBoxes, verticesA, b.triangleBoxes, trianglesB, b.triangles, out.vertexA, out.triangleB);
-  const Chosen verticesB(b.vertexBoxes, b.vertices, boxA), trianglesA(a.triangleBoxes, a.triangles, boxB);
-  out.triangleVertex =
-      NearPairs(b.vertexBoxes, verticesB, a.triangleBoxes, trianglesA, a.triangles, out.vertexB, out.triangleA);
+  const Chosen chosenA(a, BoxAt(b.leafBoxes, b.lane)), chosenB(b, BoxAt(a.leafBoxes, a.lane));
+  out.edges = NearEdges(a, chosenA, b, chosenB, out.edgeA, out.edgeB);
+  out.vertexTriangle = NearTriangles(a, b, chosenB, out.vertexA, out.triangleB);
+  out.triangleVertex = NearTriangles(b, a, chosenA, out.vertexB, out.triangleA);
 }

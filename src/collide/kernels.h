@@ -48,6 +48,24 @@ struct LeafBoxArgs {
   BoxBlock* boxes;  ///< Out; those behind the last leaf are empty.
 };
 
+/// How the triangles of a leaf lie in space, at any time of a motion.
+struct LeafShape {
+  float x[3], y[3];  ///< What positions change by with places, along two axes, for a triangle in the middle.
+  float deviation;   ///< No triangle's are farther from that, as the norm of a 3 x 2 matrix.
+};
+
+struct LeafShapeArgs {
+  int begin, end;  ///< Leaves.
+  const std::int32_t* triangleFirst;
+  const std::int32_t* corners;  ///< Of the triangles.
+  const std::int32_t* vertexFirst;
+  const std::int32_t* vertices;
+  const float* inverse;        ///< As FlatRegions has it.
+  const float* greatestSlope;  ///< As FlatRegions has it; leaves that have none are left out.
+  const BoxRow* rows;
+  LeafShape* shapes;  ///< Out.
+};
+
 struct ItemBoxArgs {
   const std::int32_t* corners;
   int cornersPerItem;  ///< 1, 2 or 3.
@@ -75,10 +93,10 @@ struct SearchArgs {
 struct LeafItems {
   const BoxBlock* leafBoxes;  ///< In which the leaf's is ...
   int lane;                   ///< ... here.
-  int edges, vertices, triangles;
-  const BoxBlock* edgeBoxes;
-  const BoxBlock* vertexBoxes;  ///< Of its own.
-  const BoxBlock* triangleBoxes;
+  int edges, triangles, vertices;
+  const BoxBlock* edgeBoxes;      ///< Blocks of edges, then of triangles.
+  const BoxBlock* triangleBoxes;  ///< Behind those of edges.
+  const BoxBlock* vertexBoxes;    ///< Of its own.
 };
 
 /// Pairs of items of two leaves a and b, each by its number in its leaf. Behind `most` there is room for whole blocks.
@@ -106,6 +124,7 @@ struct Kernels {
   void (*leafBoxes)(const LeafBoxArgs&);
   /// Writes the box of each block of `boxes` to its lane of `parents`.
   void (*parentBoxes)(const BoxBlock* boxes, int blocks, BoxBlock* parents);
+  void (*leafShapes)(const LeafShapeArgs&);
   void (*itemBoxes)(const ItemBoxArgs&);
   /// Finds the leaves that are near each other.
   void (*search)(const SearchArgs&);

@@ -22,6 +22,7 @@ using Floats = Pack<float, 4, Level>;
 #include "collide/kernel_near.h"
 #include "collide/kernel_pairs.h"
 #include "collide/kernel_search.h"
+#include "collide/kernel_shapes.h"
 #include "collide/kernel_write.h"
 
 }  // namespace
@@ -32,6 +33,7 @@ const Kernels kKernels = {
     .vertexRows = VertexRows,
     .leafBoxes = LeafBoxes,
     .parentBoxes = ParentBoxes,
+    .leafShapes = LeafShapes,
     .itemBoxes = ItemBoxes,
     .search = Search,
     .nearItems = FindNearItems,

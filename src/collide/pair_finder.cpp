@@ -10,6 +10,7 @@
 
 #include "collide/chunk_lists.h"
 #include "collide/clusters.h"
+#include "collide/flat_regions.h"
 #include "core/aligned.h"
 
 namespace percale {
@@ -31,8 +32,10 @@ int Blocks(std::int64_t count) {
   return static_cast<int>((count + kLanes - 1) / kLanes);
 }
 
+using Write = int (*)(const WriteArgs&);
+
 /// Adds what `write` writes to a list.
-void AddPairs(ChunkLists<VertexQuad>& lists, int list, int (*write)(const WriteArgs&), WriteArgs args) {
+void AddPairs(ChunkLists<VertexQuad>& lists, int list, Write write, WriteArgs args) {
   for (int left = args.count; left > 0; left -= args.count) {
     const std::span<VertexQuad> room = lists.Room(list);
     args.count = static_cast<int>(std::min<std::int64_t>(left, static_cast<std::int64_t>(room.size())));
@@ -43,11 +46,21 @@ void AddPairs(ChunkLists<VertexQuad>& lists, int list, int (*write)(const WriteA
   }
 }
 
-/// All entries of the lists, one list after another.
-class Joined {
+/// All pairs of a kind: of several threads' lists, one list after another, or of one thread that adds them here.
+class Pairs {
  public:
-  explicit Joined(int lists) : first_(Index(lists)) {}
+  explicit Pairs(int lists) : first_(Index(lists)) {}
 
+  void Clear() { count_ = 0; }
+  void Add(Write write, WriteArgs args) {
+    if (all_.size() < count_ + Index(args.count)) all_.resize((count_ + Index(args.count)) * 3 / 2);
+    args.to = all_.data()->data() + 4 * count_;
+    if (args.count > 0) count_ += Index(write(args));
+  }
+  /// Makes room for what may be written to add as many again.
+  void KeepRoom() {
+    if (all_.size() < count_ + NearItems::kMostEdges) all_.resize(count_ + NearItems::kMostEdges);
+  }
   void Join(const ChunkLists<VertexQuad>& lists, const Executor& executor) {
     count_ = 0;
     for (int list = 0; list < lists.lists(); ++list) {
@@ -60,13 +73,12 @@ class Joined {
       lists.ForEntries(list, [&](std::span<const VertexQuad> some) { to = std::copy(some.begin(), some.end(), to); });
     });
   }
-  void Clear() { count_ = 0; }
   std::span<const VertexQuad> all() const { return {all_.data(), count_}; }
   std::size_t MemoryBytes() const { return all_.capacity() * sizeof all_[0] + first_.capacity() * sizeof first_[0]; }
 
  private:
-  std::vector<std::size_t> first_;
-  std::vector<VertexQuad> all_;  // never shrinks
+  std::vector<std::size_t> first_;  // per list
+  std::vector<VertexQuad> all_;     // never shrinks
   std::size_t count_ = 0;
 };
 
@@ -102,7 +114,8 @@ struct PairFinder::Impl {
 
   void BoxVertices(const MeshMotion& motion, std::span<const double> reach);
   void BoxLeaves();
-  void SearchLeaves(bool clothPairs);
+  void ShapeLeaves();
+  void SearchLeaves(std::span<const double> reach, bool clothPairs);
   void BoxItems();
   void CompareItems();
 
@@ -118,19 +131,20 @@ struct PairFinder::Impl {
   const Executor& executor;
   const Kernels& kernels;
   const Clusters clusters;
+  const FlatRegions regions;
   const int leafBlocks;
   const int chunkBlocks;  // of one chunk
   const int chunks;
-  std::vector<std::int32_t>
-      firstItemBlock;          // per leaf: those of its edges, then of its vertices, then of its triangles
-  AlignedVector<BoxRow> rows;  // per vertex
+  std::vector<std::int32_t> firstItemBlock;     // per leaf: of its edges, then come its triangles and its own vertices
+  AlignedVector<BoxRow> rows;                   // per vertex
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
+  std::vector<LeafShape> shapes;  // per leaf
   AlignedVector<BoxBlock> itemBoxes;
   std::vector<std::uint8_t> isTouched;  // per leaf: may have pairs
   ChunkLists<LeafPair> leafPairs;
   ChunkLists<VertexQuad> vertexTriangleLists, edgeEdgeLists;
-  Joined vertexTriangle, edgeEdge;
+  Pairs vertexTriangle, edgeEdge;
 };
 
 PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k)
@@ -138,10 +152,12 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       executor(e),
       kernels(k),
       clusters(MakeClusters(m)),
+      regions(MakeFlatRegions(m, clusters)),
       leafBlocks(Blocks(clusters.leaves())),
       chunkBlocks(std::max(kLeastChunkBlocks, (leafBlocks + kMostChunks - 1) / kMostChunks)),
       chunks((leafBlocks + chunkBlocks - 1) / chunkBlocks),
       rows(m.body.size()),
+      shapes(Index(clusters.clothLeaves)),
       isTouched(Index(clusters.leaves())),
       leafPairs(chunks),
       vertexTriangleLists(chunks),
@@ -200,17 +216,34 @@ void PairFinder::Impl::BoxLeaves() {
   }
 }
 
-void PairFinder::Impl::SearchLeaves(bool clothPairs) {
+void PairFinder::Impl::ShapeLeaves() {
+  ForBlocks([&](int begin, int end, int) {
+    kernels.leafShapes({.begin = begin * kLanes,
+                        .end = std::min(end * kLanes, clusters.clothLeaves),
+                        .triangleFirst = clusters.triangleFirst.data(),
+                        .corners = Corners(std::span<const Triangle>(clusters.triangles)),
+                        .vertexFirst = clusters.vertexFirst.data(),
+                        .vertices = clusters.vertices.data(),
+                        .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
+                        .greatestSlope = regions.greatestSlope.data(),
+                        .rows = rows.data(),
+                        .shapes = shapes.data()});
+  });
+}
+
+void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPairs) {
   leafPairs.Clear();
   ForBlocks([&](int begin, int end, int chunk) {
     const auto put = [&](const LeafPair* pairs, int count) {
-      while (count > 0) {
-        const std::span<LeafPair> room = leafPairs.Room(chunk);
-        const int some = std::min(count, static_cast<int>(room.size()));
-        std::copy_n(pairs, some, room.begin());
-        leafPairs.Add(chunk, some);
-        pairs += some;
-        count -= some;
+      for (int i = 0; i < count; ++i) {
+        const auto [a, b] = pairs[i];
+        const std::int32_t body = clusters.body[Index(a)];
+        if (body == clusters.body[Index(b)] &&
+            regions.AreApart(a, b, shapes, static_cast<float>(2 * reach[Index(body)] * (1 + 1e-6)))) {
+          continue;
+        }
+        leafPairs.Room(chunk)[0] = pairs[i];
+        leafPairs.Add(chunk, 1);
       }
     };
     kernels.search({.begin = begin,
@@ -240,8 +273,8 @@ LeafItems PairFinder::Impl::ItemsOf(int leaf) const {
   items.vertices = static_cast<int>(clusters.OwnVertices(leaf).size());
   items.triangles = static_cast<int>(clusters.Triangles(leaf).size());
   items.edgeBoxes = itemBoxes.data() + firstItemBlock[Index(leaf)];
-  items.vertexBoxes = items.edgeBoxes + Blocks(items.edges);
-  items.triangleBoxes = items.vertexBoxes + Blocks(items.vertices);
+  items.triangleBoxes = items.edgeBoxes + Blocks(items.edges);
+  items.vertexBoxes = items.triangleBoxes + Blocks(items.triangles);
   return items;
 }
 
@@ -256,37 +289,50 @@ void PairFinder::Impl::BoxItems() {
         to += Blocks(count);
       };
       box(Corners(clusters.Edges(leaf)), 2, clusters.Edges(leaf).size());
-      box(Corners(clusters.OwnVertices(leaf)), 1, clusters.OwnVertices(leaf).size());
       box(Corners(clusters.Triangles(leaf)), 3, clusters.Triangles(leaf).size());
+      box(Corners(clusters.OwnVertices(leaf)), 1, clusters.OwnVertices(leaf).size());
     }
   });
 }
 
 void PairFinder::Impl::CompareItems() {
+  const bool isSerial = executor.threads() == 1;
   vertexTriangleLists.Clear();
   edgeEdgeLists.Clear();
   executor.ForChunks(chunks, [&](int chunk) {
+    const auto add = [&](Pairs& pairs, ChunkLists<VertexQuad>& lists, Write write, const WriteArgs& args) {
+      if (isSerial) {
+        pairs.Add(write, args);
+      } else {
+        AddPairs(lists, chunk, write, args);
+      }
+    };
     NearItems near;
     const auto compare = [&](const LeafPair& pair) {
       kernels.nearItems(ItemsOf(pair.a), ItemsOf(pair.b), pair.a == pair.b, near);
-      const std::int32_t *verticesA = Corners(clusters.OwnVertices(pair.a)),
-                         *verticesB = Corners(clusters.OwnVertices(pair.b));
-      AddPairs(
-          vertexTriangleLists, chunk, kernels.writeVertexTriangle,
-          {near.vertexTriangle, near.vertexA, near.triangleB, verticesA, Corners(clusters.Triangles(pair.b)), nullptr});
-      AddPairs(
-          vertexTriangleLists, chunk, kernels.writeVertexTriangle,
-          {near.triangleVertex, near.vertexB, near.triangleA, verticesB, Corners(clusters.Triangles(pair.a)), nullptr});
-      AddPairs(edgeEdgeLists, chunk, kernels.writeEdgeEdge,
-               {near.edges, near.edgeA, near.edgeB, Corners(clusters.Edges(pair.a)), Corners(clusters.Edges(pair.b)),
-                nullptr});
+      const auto vertices = [&](int leaf) { return Corners(clusters.OwnVertices(leaf)); };
+      const auto triangles = [&](int leaf) { return Corners(clusters.Triangles(leaf)); };
+      const auto edges = [&](int leaf) { return Corners(clusters.Edges(leaf)); };
+      add(vertexTriangle, vertexTriangleLists, kernels.writeVertexTriangle,
+          {near.vertexTriangle, near.vertexA, near.triangleB, vertices(pair.a), triangles(pair.b), nullptr});
+      add(vertexTriangle, vertexTriangleLists, kernels.writeVertexTriangle,
+          {near.triangleVertex, near.vertexB, near.triangleA, vertices(pair.b), triangles(pair.a), nullptr});
+      add(edgeEdge, edgeEdgeLists, kernels.writeEdgeEdge,
+          {near.edges, near.edgeA, near.edgeB, edges(pair.a), edges(pair.b), nullptr});
     };
     leafPairs.ForEntries(chunk, [&](std::span<const LeafPair> pairs) {
       for (const LeafPair& pair : pairs) compare(pair);
     });
   });
-  vertexTriangleLists.KeepRoom();
-  edgeEdgeLists.KeepRoom();
+  if (isSerial) {
+    vertexTriangle.KeepRoom();
+    edgeEdge.KeepRoom();
+  } else {
+    vertexTriangleLists.KeepRoom();
+    edgeEdgeLists.KeepRoom();
+    vertexTriangle.Join(vertexTriangleLists, executor);
+    edgeEdge.Join(edgeEdgeLists, executor);
+  }
 }
 
 PairFinder::PairFinder(const ContactMesh& mesh, const Executor& executor) : PairFinder(mesh, executor, BestKernels()) {}
@@ -301,11 +347,10 @@ void PairFinder::Find(const MeshMotion& motion, std::span<const double> reach, b
   if (s.clusters.clothLeaves == 0) return;
   s.BoxVertices(motion, reach);
   s.BoxLeaves();
-  s.SearchLeaves(clothPairs);
+  if (clothPairs) s.ShapeLeaves();
+  s.SearchLeaves(reach, clothPairs);
   s.BoxItems();
   s.CompareItems();
-  s.vertexTriangle.Join(s.vertexTriangleLists, s.executor);
-  s.edgeEdge.Join(s.edgeEdgeLists, s.executor);
 }
 
 std::span<const VertexQuad> PairFinder::vertexTriangle() const {
@@ -319,9 +364,10 @@ std::span<const VertexQuad> PairFinder::edgeEdge() const {
 std::size_t PairFinder::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   const Impl& s = *impl_;
-  std::size_t sum = s.clusters.MemoryBytes() + bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) +
-                    bytes(s.isTouched) + s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() +
-                    s.edgeEdgeLists.MemoryBytes() + s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
+  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.firstItemBlock) +
+                    bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.isTouched) + s.leafPairs.MemoryBytes() +
+                    s.vertexTriangleLists.MemoryBytes() + s.edgeEdgeLists.MemoryBytes() +
+                    s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
   for (const auto& level : s.levels) sum += bytes(level);
   return sum;
 }

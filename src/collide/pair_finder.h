@@ -31,10 +31,11 @@ class PairFinder {
   PairFinder(const ContactMesh& mesh, const Executor& executor, const collide::Kernels& kernels);
   ~PairFinder();
 
-  /// Lists all pairs of a vertex and a triangle, and of two edges, whose boxes come within reach[body] +
-  /// reach[other body] of each other, so all that come as close as that in distance; but none with a vertex in common,
-  /// none of two obstacles, and none of two cloths where `clothPairs` is false. Always in the same order. Allocates
-  /// only where there are more than ever before. `reach`: per body [m].
+  /// Lists pairs of a vertex and a triangle, and of two edges, whose boxes come within reach[body] + reach[other body]
+  /// of each other: all that come as close as that in distance, and some more. None with a vertex in common, none of
+  /// two obstacles, and none of two cloths where `clothPairs` is false. Always in the same order. What is farther than
+  /// 1e30 m or not a number comes near nothing. Allocates only where there are more than ever before. `reach`: per
+  /// body [m].
   void Find(const MeshMotion& motion, std::span<const double> reach, bool clothPairs);
 
   std::span<const VertexQuad> vertexTriangle() const;  ///< {vertex, a, b, c}

@@ -114,6 +114,16 @@ inline Vec3 Layers(const Vec3& p, double width, int layers, double apart) {
 
 using PairSet = std::vector<VertexQuad>;
 
+/// Where vertices are at that time, those that may be cut somewhere on their way there.
+inline std::vector<Vec3> PositionsAt(const MovingMesh& m, double time, SplitMix64& random) {
+  std::vector<Vec3> x;
+  for (std::size_t v = 0; v < m.start.size(); ++v) {
+    const bool cut = !m.cut.empty() && m.cut[v] != 0;
+    x.push_back(m.start[v] + m.way[v] * (time * (cut ? random.NextUnit() : 1)));
+  }
+  return x;
+}
+
 /// Two ways to write the same pair become one.
 inline PairSet Sorted(std::span<const VertexQuad> vertexTriangle) {
   PairSet set(vertexTriangle.begin(), vertexTriangle.end());
@@ -216,6 +226,31 @@ inline AllPairs FindAll(const MovingMesh& m, double more = 0) {
   all.vertexTriangle = Sorted(all.vertexTriangle);
   all.edgeEdge = SortedEdges(all.edgeEdge);
   return all;
+}
+
+inline double PointEdgeDistance(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double square = Dot(ab, ab), t = square > 0 ? std::clamp(Dot(p - a, ab) / square, 0.0, 1.0) : 0;
+  return Length(p - (a + ab * t));
+}
+
+inline double PointTriangleDistance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double sides = std::min({PointEdgeDistance(p, a, b), PointEdgeDistance(p, b, c), PointEdgeDistance(p, c, a)});
+  const Vec3 n = Cross(b - a, c - a);
+  if (Dot(n, n) == 0) return sides;
+  const bool isAbove =
+      Dot(Cross(b - a, p - a), n) >= 0 && Dot(Cross(c - b, p - b), n) >= 0 && Dot(Cross(a - c, p - c), n) >= 0;
+  return isAbove ? std::abs(Dot(p - a, n)) / Length(n) : sides;
+}
+
+inline double EdgeDistance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const double ends = std::min(
+      {PointEdgeDistance(a, c, d), PointEdgeDistance(b, c, d), PointEdgeDistance(c, a, b), PointEdgeDistance(d, a, b)});
+  const Vec3 n = Cross(b - a, d - c);
+  const double square = Dot(n, n);
+  if (square == 0) return ends;
+  const double s = Dot(Cross(c - a, d - c), n) / square, t = Dot(Cross(c - a, b - a), n) / square;
+  return s >= 0 && s <= 1 && t >= 0 && t <= 1 ? std::abs(Dot(c - a, n)) / std::sqrt(square) : ends;
 }
 
 }  // namespace percale::test

@@ -1,0 +1,331 @@
+#include "collide/flat_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "percale/vec3.h"
+
+namespace percale {
+
+using namespace collide;
+
+namespace {
+
+constexpr double kInside = 1e-8;     // of a region's size: what reaches into its hull by less than that is outside
+constexpr double kAreaError = 1e-6;  // of a hull's area
+
+std::size_t Index(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+double Cross(const Vec2& a, const Vec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
+Vec2 Minus(const Vec2& a, const Vec2& b) {
+  return {a.x - b.x, a.y - b.y};
+}
+double Size(const Vec2& a) {
+  return std::sqrt(a.x * a.x + a.y * a.y);
+}
+
+using Polygon = std::vector<Vec2>;
+
+double Area(const Polygon& p) {
+  double sum = 0;
+  for (std::size_t i = 2; i < p.size(); ++i) sum += Cross(Minus(p[i - 1], p[0]), Minus(p[i], p[0]));
+  return sum / 2;
+}
+
+/// The convex hull, counterclockwise (Andrew 1979). Sorts the points.
+void MakeHull(Polygon& points, Polygon& hull) {
+  std::sort(points.begin(), points.end(),
+            [](const Vec2& a, const Vec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  hull.clear();
+  const auto add = [&](const Vec2& p, std::size_t least) {
+    while (hull.size() > least &&
+           Cross(Minus(hull.back(), hull[hull.size() - 2]), Minus(p, hull[hull.size() - 2])) <= 0) {
+      hull.pop_back();
+    }
+    hull.push_back(p);
+  };
+  for (const Vec2& p : points) add(p, 1);
+  const std::size_t lower = hull.size();
+  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
+  hull.pop_back();
+}
+
+/// What lies to the left of a line: n·p >= d.
+struct HalfPlane {
+  Vec2 n;
+  double d;
+  double Depth(const Vec2& p) const { return n.x * p.x + n.y * p.y - d; }
+};
+
+/// What is within a hull by `inside`.
+void MakeHalfPlanes(const Polygon& hull, double inside, std::vector<HalfPlane>& planes) {
+  planes.clear();
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vec2 along = Minus(hull[(i + 1) % hull.size()], hull[i]);
+    const double length = Size(along);
+    const Vec2 n = {-along.y / length, along.x / length};
+    planes.push_back({n, n.x * hull[i].x + n.y * hull[i].y + inside});
+  }
+}
+
+/// Cuts off what is not in all of them.
+void Clip(Polygon& polygon, const std::vector<HalfPlane>& planes, Polygon& scratch) {
+  for (const HalfPlane& plane : planes) {
+    double least = plane.Depth(polygon[0]), most = least;
+    for (const Vec2& p : polygon) {
+      least = std::min(least, plane.Depth(p));
+      most = std::max(most, plane.Depth(p));
+    }
+    if (least >= 0) continue;
+    if (most < 0) {
+      polygon.clear();
+      return;
+    }
+    scratch.clear();
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const Vec2 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+      const double ofP = plane.Depth(p), ofQ = plane.Depth(q);
+      if (ofP >= 0) scratch.push_back(p);
+      if ((ofP >= 0) != (ofQ >= 0)) {
+        const double t = ofP / (ofP - ofQ);
+        scratch.push_back({p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t});
+      }
+    }
+    polygon.swap(scratch);
+  }
+}
+
+/// What regions are made from, and scratch.
+class Builder {
+ public:
+  Builder(const ContactMesh& mesh, const Clusters& clusters);
+  FlatRegions Make();
+
+ private:
+  const Triangle& At(std::int32_t t) const { return clusters_.triangles[Index(t)]; }
+  Vec2 Place(std::int32_t vertex, int axis) const {
+    const Vec3& p = mesh_.place[Index(vertex)];
+    return axis == 0 ? Vec2{p.y, p.z} : axis == 1 ? Vec2{p.z, p.x} : Vec2{p.x, p.y};
+  }
+  double SignedArea(std::int32_t t, int axis) const {
+    const Vec2 a = Place(At(t).a, axis);
+    return Cross(Minus(Place(At(t).b, axis), a), Minus(Place(At(t).c, axis), a)) / 2;
+  }
+  void FindNeighbours();
+  void FindLeafNeighbours();
+  void ShapeLeaf(std::int32_t leaf);
+  void AddRegion(std::int32_t a, std::int32_t b);
+
+  const ContactMesh& mesh_;
+  const Clusters& clusters_;
+  std::vector<std::int32_t> leafOf_;                       // per triangle
+  std::vector<std::array<std::int32_t, 3>> neighbours_;    // per triangle: beyond ab, bc, ca; or -1
+  std::vector<std::vector<std::int32_t>> leafNeighbours_;  // with itself, ascending
+  std::vector<int> view_;         // per leaf: the axis that places are seen along, plus 3 if from below; or -1
+  std::vector<double> altitude_;  // per leaf, the least
+  FlatRegions regions_;
+
+  Polygon points_, hull_, piece_, scratch_;
+  std::vector<HalfPlane> planes_;
+  std::vector<std::int32_t> open_, seen_, leaves_;  // triangles, triangles' last pair, leaves of a region
+  std::int32_t pair_ = 0;
+};
+
+Builder::Builder(const ContactMesh& mesh, const Clusters& clusters) : mesh_(mesh), clusters_(clusters) {
+  for (std::int32_t leaf = 0; leaf < clusters.leaves(); ++leaf) {
+    leafOf_.insert(leafOf_.end(), clusters.Triangles(leaf).size(), leaf);
+  }
+  seen_.assign(clusters.triangles.size(), -1);
+}
+
+/// Triangles that run a common edge in opposite ways, and no others have it.
+void Builder::FindNeighbours() {
+  struct Side {
+    std::int32_t low, high, triangle, side;
+    bool forth;
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * clusters_.triangles.size());
+  for (std::size_t t = 0; t < clusters_.triangles.size(); ++t) {
+    const std::int32_t v[] = {clusters_.triangles[t].a, clusters_.triangles[t].b, clusters_.triangles[t].c};
+    for (std::int32_t k = 0; k < 3; ++k) {
+      const std::int32_t from = v[k], to = v[(k + 1) % 3];
+      sides.push_back({std::min(from, to), std::max(from, to), static_cast<std::int32_t>(t), k, from < to});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::array{a.low, a.high, a.triangle} < std::array{b.low, b.high, b.triangle};
+  });
+  neighbours_.assign(clusters_.triangles.size(), {-1, -1, -1});
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
+    const Side &one = sides[begin], &other = sides[end - 1];
+    if (end - begin != 2 || one.forth == other.forth) continue;
+    neighbours_[Index(one.triangle)][Index(one.side)] = other.triangle;
+    neighbours_[Index(other.triangle)][Index(other.side)] = one.triangle;
+  }
+}
+
+void Builder::FindLeafNeighbours() {
+  std::vector<std::vector<std::int32_t>> leavesOf(Index(mesh_.vertices()));
+  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+    for (const std::int32_t v : clusters_.Vertices(leaf)) leavesOf[Index(v)].push_back(leaf);
+  }
+  const auto unite = [](std::vector<std::int32_t>& all) {
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+  };
+  leafNeighbours_.resize(Index(clusters_.leaves()));
+  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+    auto& all = leafNeighbours_[Index(leaf)];
+    for (const std::int32_t v : clusters_.Vertices(leaf)) {
+      all.insert(all.end(), leavesOf[Index(v)].begin(), leavesOf[Index(v)].end());
+    }
+    unite(all);
+  }
+}
+
+void Builder::ShapeLeaf(std::int32_t leaf) {
+  double normal[3] = {0, 0, 0};
+  const std::int32_t begin = clusters_.triangleFirst[Index(leaf)], end = clusters_.triangleFirst[Index(leaf) + 1];
+  for (std::int32_t t = begin; t < end; ++t) {
+    for (int axis = 0; axis < 3; ++axis) normal[axis] += SignedArea(t, axis);
+  }
+  const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto axis = static_cast<int>(std::max_element(normal, normal + 3, smaller) - normal);
+  bool isFlat = clusters_.hasOnlyTriangles[Index(leaf)] != 0;
+  double slope = 0, altitude = std::numeric_limits<double>::infinity();
+  for (std::int32_t t = begin; t < end; ++t) {
+    const Vec2 a = Place(At(t).a, axis), ab = Minus(Place(At(t).b, axis), a), ac = Minus(Place(At(t).c, axis), a);
+    const double twice = Cross(ab, ac);
+    isFlat = isFlat && twice * normal[axis] > 0;  // else it is turned over or has no area
+    const double sides[] = {Size(ab), Size(ac), Size(Minus(ac, ab))};
+    altitude = std::min(altitude, std::abs(twice) / *std::max_element(sides, sides + 3));
+    slope = std::max(slope, (sides[0] + sides[1] + sides[2]) / std::abs(twice));
+    regions_.inverse.push_back({static_cast<float>(ac.y / twice), static_cast<float>(-ac.x / twice),
+                                static_cast<float>(-ab.y / twice), static_cast<float>(ab.x / twice)});
+  }
+  altitude_.push_back(altitude);
+  view_.push_back(!isFlat ? -1 : normal[axis] > 0 ? axis : axis + 3);
+  regions_.greatestSlope.push_back(isFlat ? static_cast<float>(slope * (1 + 1e-6)) : -1.0f);
+}
+
+/// Adds the region of two leaves, if they have one.
+void Builder::AddRegion(std::int32_t a, std::int32_t b) {
+  const int view = view_[Index(a)], axis = view % 3;
+  if (view < 0 || view_[Index(b)] != view) return;
+  points_.clear();
+  for (const std::int32_t leaf : {a, b}) {
+    for (const std::int32_t v : clusters_.Vertices(leaf)) points_.push_back(Place(v, axis));
+  }
+  MakeHull(points_, hull_);
+  const double area = Area(hull_);
+  MakeHalfPlanes(hull_, kInside * std::sqrt(area), planes_);
+
+  // From the first triangle on to all that the hull reaches into.
+  double covered = 0, altitude = std::numeric_limits<double>::infinity();
+  std::size_t inLeaves = 0;
+  leaves_.clear();
+  open_ = {clusters_.triangleFirst[Index(a)]};
+  ++pair_;
+  seen_[Index(open_[0])] = pair_;
+  while (!open_.empty()) {
+    const std::int32_t t = open_.back(), leaf = leafOf_[Index(t)];
+    open_.pop_back();
+    const Vec2 corners[] = {Place(At(t).a, axis), Place(At(t).b, axis), Place(At(t).c, axis)};
+    piece_.assign(corners, corners + 3);
+    if (leaf == a || leaf == b) {
+      ++inLeaves;
+    } else {
+      Clip(piece_, planes_, scratch_);
+      if (piece_.empty()) continue;
+      if (view_[Index(leaf)] != view) return;
+    }
+    covered += std::abs(Area(piece_));
+    if (leaves_.empty() || leaves_.back() != leaf) leaves_.push_back(leaf);
+    altitude = std::min(altitude, altitude_[Index(leaf)]);
+    for (std::size_t side = 0; side < 3; ++side) {
+      const std::int32_t next = neighbours_[Index(t)][side];
+      if (next < 0) {
+        piece_ = {corners[side], corners[(side + 1) % 3]};
+        Clip(piece_, planes_, scratch_);
+        if (!piece_.empty()) return;  // the mesh has a border there
+      } else if (seen_[Index(next)] != pair_) {
+        seen_[Index(next)] = pair_;
+        open_.push_back(next);
+      }
+    }
+  }
+  // It is covered once, and by what hangs together with both.
+  const std::size_t triangles = clusters_.Triangles(a).size() + (a == b ? 0 : clusters_.Triangles(b).size());
+  if (inLeaves != triangles || !(std::abs(covered - area) <= kAreaError * area)) return;
+  std::sort(leaves_.begin(), leaves_.end());
+  leaves_.erase(std::unique(leaves_.begin(), leaves_.end()), leaves_.end());
+  regions_.other.push_back(b);
+  regions_.altitude.push_back(static_cast<float>(altitude * (1 - 1e-6)));
+  regions_.region.insert(regions_.region.end(), leaves_.begin(), leaves_.end());
+  regions_.regionFirst.push_back(static_cast<std::int32_t>(regions_.region.size()));
+}
+
+FlatRegions Builder::Make() {
+  FindNeighbours();
+  FindLeafNeighbours();
+  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) ShapeLeaf(leaf);
+  regions_.first = regions_.regionFirst = {0};
+  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+    for (const std::int32_t other : leafNeighbours_[Index(leaf)]) {
+      if (other >= leaf) AddRegion(leaf, other);
+    }
+    regions_.first.push_back(static_cast<std::int32_t>(regions_.other.size()));
+  }
+  return std::move(regions_);
+}
+
+float Dot(const float* a, const float* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+}  // namespace
+
+bool FlatRegions::AreApart(std::int32_t a, std::int32_t b, std::span<const LeafShape> shapes, float distance) const {
+  const auto begin = other.begin() + first[Index(a)], end = other.begin() + first[Index(a) + 1];
+  const auto found = std::lower_bound(begin, end, b);
+  if (found == end || *found != b) return false;
+  const auto pair = Index(found - other.begin());
+  float x[3], y[3];  // of G
+  for (int i = 0; i < 3; ++i) {
+    x[i] = (shapes[Index(a)].x[i] + shapes[Index(b)].x[i]) / 2;
+    y[i] = (shapes[Index(a)].y[i] + shapes[Index(b)].y[i]) / 2;
+  }
+  const float xx = Dot(x, x), yy = Dot(y, y), xy = Dot(x, y);
+  const float norm = std::sqrt((xx + yy) / 2 + std::sqrt((xx - yy) * (xx - yy) / 4 + xy * xy));
+  const float least = distance * norm / altitude[pair] * 1.0001f;
+  for (std::int32_t i = regionFirst[pair]; i < regionFirst[pair + 1]; ++i) {
+    const LeafShape& f = shapes[Index(region[Index(i)])];
+    const float fxx = Dot(x, f.x), fyy = Dot(y, f.y), fxy = (Dot(x, f.y) + Dot(y, f.x)) / 2;
+    // m = (fxx + fyy) / 2 - root(square) - norm * deviation > least
+    const float root = (fxx + fyy) / 2 - norm * f.deviation - least;
+    const float square = (fxx - fyy) * (fxx - fyy) / 4 + fxy * fxy;
+    if (!(root > 0 && root * root > square)) return false;
+  }
+  return true;
+}
+
+std::size_t FlatRegions::MemoryBytes() const {
+  const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
+  return bytes(inverse) + bytes(greatestSlope) + bytes(first) + bytes(other) + bytes(altitude) + bytes(regionFirst) +
+         bytes(region);
+}
+
+FlatRegions MakeFlatRegions(const ContactMesh& mesh, const Clusters& clusters) {
+  return Builder(mesh, clusters).Make();
+}
+
+}  // namespace percale

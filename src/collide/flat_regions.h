@@ -1,0 +1,44 @@
+#pragma once
+/// \file
+/// Where a mesh lies so flat that no two of its items can touch unless they are neighbours.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collide/clusters.h"
+#include "collide/contact_mesh.h"
+#include "collide/kernels.h"
+
+namespace percale {
+
+/// Pairs of leaves of one body whose places, without one axis, are a plane triangulation that covers the convex hull of
+/// both: the region of the pair.
+///
+/// Let F be a triangle's derivative of position by place, 3 x 2. If there is a G with (Gᵀ F + Fᵀ G) / 2 >= m for all
+/// triangles of the region, then for two points of the leaves at positions x, y and places p, q, since p and q are
+/// joined by a straight line through the region,
+///   |G| |p - q| |x - y| >= (p - q)ᵀ Gᵀ (x - y) >= m |p - q|².
+/// Items with no vertex in common are at least the least altitude h of the region's triangles apart in place, as what
+/// starts at a vertex has to cross one of its triangles. So they are at least m h / |G| apart.
+struct FlatRegions {
+  /// Inverse of the edge vectors (b - a, c - a) in place, row by row, in the order of Clusters::triangles [1/m].
+  std::vector<std::array<float, 4>> inverse;
+  /// Per leaf: how fast F changes at most when vertices move, the greatest sum of a triangle's three inverse altitudes
+  /// [1/m]; or -1: it has no regions.
+  std::vector<float> greatestSlope;
+  std::vector<std::int32_t> first;        ///< Leaf l has the pairs with others at [first[l], first[l + 1]) of ...
+  std::vector<std::int32_t> other;        ///< ... these: ascending, itself and such that come behind it.
+  std::vector<float> altitude;            ///< Per pair: h [m].
+  std::vector<std::int32_t> regionFirst;  ///< Pair k has the leaves at [regionFirst[k], regionFirst[k + 1]) of ...
+  std::vector<std::int32_t> region;       ///< ... these.
+
+  /// Whether no two items of these leaves without a vertex in common come within that distance. `shapes`: per leaf.
+  bool AreApart(std::int32_t a, std::int32_t b, std::span<const collide::LeafShape> shapes, float distance) const;
+  std::size_t MemoryBytes() const;
+};
+
+FlatRegions MakeFlatRegions(const ContactMesh& mesh, const Clusters& clusters);
+
+}  // namespace percale

@@ -1,0 +1,65 @@
+// How leaves lie in space. Included by kernels_impl.h inside the namespace of an instruction set, like everything
+// there; never elsewhere.
+
+using Floats8 = Pack<float, 8, Level>;  // of the start, and of the end
+
+constexpr int kMostTriangles = 16;
+constexpr float kRowError = 0x1p-20f;    // of a coordinate's size: rows are rounded, and so is what follows from them
+constexpr float kShapeError = 0x1p-16f;  // of a shape's size, likewise
+
+/// The most that a vertex of the leaf may be from the middles of its boxes.
+inline float GreatestError(const LeafShapeArgs& a, int leaf) {
+  Floats size(0), more(0);
+  for (int i = a.vertexFirst[leaf]; i < a.vertexFirst[leaf + 1]; ++i) {
+    const Row row = Row::Load(a.rows[a.vertices[i]]);
+    for (int end = 0; end < 2; ++end) size = Max(size, Max(Abs(row.low[end]), Abs(row.high[end])));
+    more = Max(more, (row.high[1] - row.low[1]) - (row.high[0] - row.low[0]));  // it may be cut
+  }
+  float greatest = 0, sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    greatest = size[i] > greatest ? size[i] : greatest;
+    sum += more[i];
+  }
+  return greatest * kRowError + sum;
+}
+
+void LeafShapes(const LeafShapeArgs& a) {
+  for (int leaf = a.begin; leaf < a.end; ++leaf) {
+    if (a.greatestSlope[leaf] < 0) continue;
+    const int begin = a.triangleFirst[leaf], count = a.triangleFirst[leaf + 1] - begin;
+    const auto twiceMiddle = [&](int v) { return Floats8::Load(a.rows[v].low[0]) + Floats8::Load(a.rows[v].high[0]); };
+    Floats8 x[kMostTriangles], y[kMostTriangles], sumX, sumY;
+    for (int t = 0; t < count; ++t) {
+      const std::int32_t* corners = a.corners + 3 * (begin + t);
+      const float* inverse = a.inverse + 4 * (begin + t);
+      const Floats8 p = twiceMiddle(corners[0]), ab = twiceMiddle(corners[1]) - p, ac = twiceMiddle(corners[2]) - p;
+      x[t] = ab * Floats8(inverse[0]) + ac * Floats8(inverse[2]);
+      y[t] = ab * Floats8(inverse[1]) + ac * Floats8(inverse[3]);
+      sumX += x[t];
+      sumY += y[t];
+    }
+    // All are twice too large so far.
+    LeafShape& shape = a.shapes[leaf];
+    float meanX[8], meanY[8], size = 0;
+    const float share = 0.25f / static_cast<float>(count);
+    for (int i = 0; i < 4; ++i) {
+      meanX[i] = meanX[i + 4] = (sumX[i] + sumX[i + 4]) * share * 2;
+      meanY[i] = meanY[i + 4] = (sumY[i] + sumY[i + 4]) * share * 2;
+    }
+    for (int i = 0; i < 3; ++i) {
+      shape.x[i] = meanX[i] / 2;
+      shape.y[i] = meanY[i] / 2;
+      size += (meanX[i] < 0 ? -meanX[i] : meanX[i]) + (meanY[i] < 0 ? -meanY[i] : meanY[i]);
+    }
+    const Floats8 middleX = Floats8::Load(meanX), middleY = Floats8::Load(meanY);
+    float greatest = 0;
+    for (int t = 0; t < count; ++t) {
+      const Floats8 dx = x[t] - middleX, dy = y[t] - middleY, squares = dx * dx + dy * dy;
+      const float start = squares[0] + squares[1] + squares[2], end = squares[4] + squares[5] + squares[6];
+      greatest = start > greatest ? start : greatest;
+      greatest = end > greatest ? end : greatest;
+    }
+    shape.deviation =
+        __builtin_sqrtf(greatest) / 2 + a.greatestSlope[leaf] * GreatestError(a, leaf) + size * kShapeError;
+  }
+}
