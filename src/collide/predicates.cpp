@@ -90,16 +90,11 @@ Two ExactProduct(double a, double b) {
 
 /// h = e + f, and its length: at most m + n. By merging (fast expansion sum, theorem 13). h is neither e nor f.
 int Sum(const double* e, int m, const double* f, int n, double* h) {
-  int i = 0, j = 0, length = 0;
-  const auto next = [&] {
-    if (j == n || (i < m && std::abs(e[i]) <= std::abs(f[j]))) return e[i++];
-    return f[j++];
-  };
-  if (m + n == 0) return 0;
-  double q = next();
-  for (bool second = true; i < m || j < n; second = false) {
-    const double g = next();
-    const Two sum = second ? ExactSumOrdered(g, q) : ExactSum(q, g);
+  int length = 0;
+  double q = 0;
+  for (int i = 0, j = 0; i + j < m + n;) {
+    const bool ofE = j == n || (i < m && std::abs(e[i]) <= std::abs(f[j]));
+    const Two sum = ExactSum(q, ofE ? e[i++] : f[j++]);
     if (sum.low != 0) h[length++] = sum.low;
     q = sum.high;
   }

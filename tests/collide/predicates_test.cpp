@@ -26,13 +26,14 @@ class Whole {
   }
   /// The double times 2^shift; its mantissa of 53 bits must come out whole.
   static Whole Of(double number, int shift) {
+    if (number == 0) return {};
     int exponent = 0;
     const double mantissa = std::frexp(number, &exponent);  // 53 bits: whole times 2^-53
     Whole whole(static_cast<std::int64_t>(std::ldexp(mantissa, 53)));
     int left = exponent - 53 + shift;
-    REQUIRE((left >= 0 || number == 0));
-    for (; left >= 32 && !whole.digits_.empty(); left -= 32) whole.digits_.insert(whole.digits_.begin(), 0);
-    return whole * Whole(std::int64_t{1} << std::max(left, 0));
+    if (left < 0) FAIL("the shift is too small");
+    for (; left >= 32; left -= 32) whole.digits_.insert(whole.digits_.begin(), 0);
+    return whole * Whole(std::int64_t{1} << left);
   }
 
   int Sign() const { return digits_.empty() ? 0 : negative_ ? -1 : 1; }
@@ -131,8 +132,9 @@ std::int64_t Uniform(SplitMix64& random, std::int64_t low, std::int64_t high) {
 
 /// A double of random digits, between 2^low and 2^high in size.
 double Wild(SplitMix64& random, int low, int high) {
-  const double mantissa = (1 + random.NextUnit()) * (random.Next() % 2 == 0 ? 1 : -1);
-  return std::ldexp(mantissa, static_cast<int>(Uniform(random, low, high)));
+  const double size = 1 + random.NextUnit();
+  const int exponent = static_cast<int>(Uniform(random, low, high));
+  return std::ldexp(random.Next() % 2 == 0 ? size : -size, exponent);
 }
 
 using Lattice = Point<std::int64_t>;
@@ -234,7 +236,8 @@ TEST_CASE("of points in a plane whose differences do not fit into a double, no s
   for (int i = 0; i < 20000; ++i) {
     std::array<Vec3, 4> p;
     const auto coordinate = [&] {
-      return std::ldexp(double(Uniform(random, -9, 9)), static_cast<int>(Uniform(random, -22, 22)));
+      const auto digits = double(Uniform(random, -9, 9));
+      return std::ldexp(digits, static_cast<int>(Uniform(random, -22, 22)));
     };
     for (std::size_t k = 0; k < 3; ++k) p[k] = {coordinate(), coordinate(), coordinate()};
     p[3] = 0.5 * (p[0] + p[1]);
