@@ -228,6 +228,27 @@ TEST_CASE("of points within rounding of a plane, with all digits in use, no sign
   CHECK(seen[2] > 10000);
 }
 
+TEST_CASE("of points within rounding of a line, with all digits in use, no sign is wrong") {
+  SplitMix64 random(9);
+  std::array<int, 3> seen{};
+  for (int i = 0; i < 60000; ++i) {
+    const double offset = i % 3 == 0 ? 1000.0 : 0.0;
+    const auto coordinate = [&] { return offset + 2 * random.NextUnit() - 1; };
+    std::array<Vec2, 3> p;
+    for (std::size_t k = 0; k < 2; ++k) p[k] = {coordinate(), coordinate()};
+    const double s = 3 * random.NextUnit() - 1;
+    p[2] = {p[0].x + s * (p[1].x - p[0].x), p[0].y + s * (p[1].y - p[0].y)};
+    std::swap(p[2], p[std::size_t(i % 3)]);
+    const int sign = ReferenceOrient2d(p, 120);
+    ++seen[std::size_t(1 + sign)];
+    if (Orient2d(p[0], p[1], p[2]) == sign && ExactOrient2d(p[0], p[1], p[2]) == sign) continue;
+    CHECK(Orient2d(p[0], p[1], p[2]) == sign);
+    CHECK(ExactOrient2d(p[0], p[1], p[2]) == sign);
+  }
+  CHECK(seen[0] > 10000);
+  CHECK(seen[2] > 10000);
+}
+
 TEST_CASE("of points in a plane whose differences do not fit into a double, no sign is wrong") {
   // p[3] is the middle of an edge, to the bit, of points of few digits at very different sizes: exactly 0. Moved by the
   // smallest step it is not.
@@ -331,6 +352,26 @@ TEST_CASE("a segment and a triangle of a lattice meet just when their difference
     }
   }
   CHECK(meeting > 20000);
+}
+
+TEST_CASE("a segment along a side of a triangle, of so many digits that products are rounded") {
+  SplitMix64 random(10);
+  for (int i = 0; i < 20000; ++i) {
+    const auto corner = [&] {
+      constexpr std::int64_t kMost = std::int64_t{1} << 40;
+      const auto coordinate = [&] { return 8 * double(Uniform(random, -kMost, kMost)); };
+      const double x = coordinate(), y = coordinate();
+      return Vec3{x, y, coordinate()};
+    };
+    const Vec3 a = corner(), b = corner(), c = corner();
+    const double share = double(Uniform(random, 1, 12)) / 8;
+    const Vec3 q = a + share * (b - a);  // exact
+    const bool both = SegmentRunsOnTriangle(q, a, b, c) && SegmentRunsOnTriangle(q, a, c, b);
+    const bool none = SegmentRunsOnTriangle(a - share * (b - a), a, b, c);
+    if (both && !none) continue;
+    CHECK(both);
+    CHECK_FALSE(none);
+  }
 }
 
 TEST_CASE("a segment from a corner runs on a triangle just when the rest of it meets the triangle") {
