@@ -78,6 +78,12 @@ Result<ReadMesh> LoadPolygons(const fs::path& file, CacheKind kind) {
                                          std::to_string(t.b) + ", " + std::to_string(t.c) +
                                          ", counted from 0); expected three different ones; remove such triangles");
   }
+  std::vector<bool> used(soup.positions.size());
+  for (const std::int32_t v : soup.corners) used[Z(v)] = true;
+  if (const auto loose = std::count(used.begin(), used.end(), false); loose > 0) {
+    messages.Add(MakeWarning(PathText(file), std::to_string(loose) + (loose == 1 ? " vertex is" : " vertices are") +
+                                                 " of no triangle; the file may have been cut short"));
+  }
   mesh.clothBegins = ClothBegins(soup);
   mesh.positions = std::move(soup.positions);
   mesh.corners = std::move(soup.corners);
@@ -204,7 +210,8 @@ struct CacheReader::Impl {
     if (!read) return read.diagnostics();
     if (!read->IsLike(mesh)) {
       const auto counts = [](const ReadMesh& m) {
-        return std::to_string(m.positions.size()) + " vertices and " + std::to_string(m.polygonEnds.size()) + " faces";
+        return std::to_string(m.positions.size()) + " vertices and " + std::to_string(m.polygonEnds.size()) +
+               (m.polygonEnds.size() == 1 ? " face" : " faces");
       };
       return MakeError(PathText(frame.path), "expected the mesh of " + Quote(PathText(files[0].path.filename())) +
                                                  " with its vertices moved, " + counts(mesh) +

@@ -286,7 +286,7 @@ struct IntersectionJudge::Impl {
   }
 
   bool Meet(const OwnEdge& edge, const Corners& c) const {
-    const auto isCorner = [&](std::int32_t v) { return (v == c[0]) | (v == c[1]) | (v == c[2]); };
+    const auto isCorner = [&](std::int32_t v) { return v == c[0] || v == c[1] || v == c[2]; };
     const bool shared = isCorner(edge.a);
     if (!shared && !isCorner(edge.b)) {
       if (IsObstacle(edge.a) && IsObstacle(c[0])) return false;

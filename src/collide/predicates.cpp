@@ -21,16 +21,16 @@ constexpr double kHalfUlp = 0x1p-53;  // the greatest relative error u of a roun
 // rounding of the bound itself.
 constexpr double kFilter3d = 9 * kHalfUlp;
 constexpr double kFilter2d = 5 * kHalfUlp;
-// An underflow adds at most 2^-1075 to a product, which is then multiplied by at most 2 kLargestExact: less than 1e-232
-// in all. Below this the filters do not decide.
-constexpr double kUnderflow = 1e-230;
+// Nothing underflows: a coordinate of kSmallestExact or more is a multiple of 2^-351, so each difference is, and each
+// product a multiple of 2^-1053.
 
-/// Whether the way w from the corner of a triangle is certain not to be a sum of multiples >= 0 of the ways u and v
-/// along its sides. It is none if (u x v)(u x w) or (u x v)(w x v) is negative, which are those multiples times |u x
-/// v|^2. Written by Lagrange's identity; a product of coordinates passes 12 roundings, and the sum of their sizes is at
-/// most 2 u^2 |v| |w| <= u^2 (v^2 + w^2), the other way round in the second.
+/// Whether the way w from the corner of a triangle is certain not to be a sum s u + t v, s and t >= 0, of the ways u
+/// and v along its sides. Of such a sum, (u x v) (u x w) = t (u x v)^2 and (u x v) (w x v) = s (u x v)^2 are not
+/// negative. Both are written by Lagrange's identity. Each product of coordinates passes 12 roundings; the sum of their
+/// sizes is at most 2 u^2 |v| |w| <= u^2 (v^2 + w^2), and the same with u and v exchanged.
 bool LeavesAngle(const Vec3& w, const Vec3& u, const Vec3& v) {
-  constexpr double kFilter = 16 * kHalfUlp, kLost = 1e-140;  // the latter by underflow, as above
+  constexpr double kFilter = 16 * kHalfUlp;
+  constexpr double kLost = 1e-140;  // by underflow: some 2^-1075, times at most 3 (2 kLargestExact)^2 each
   const double uu = Dot(u, u), vv = Dot(v, v), ww = Dot(w, w), uv = Dot(u, v), uw = Dot(u, w), vw = Dot(v, w);
   return uu * vw - uw * uv < -(kFilter * uu * (vv + ww) + kLost) ||
          vv * uw - vw * uv < -(kFilter * vv * (uu + ww) + kLost);
@@ -48,7 +48,7 @@ int QuickOrient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const double size = (std::abs(bxcy) + std::abs(cxby)) * std::abs(az) +
                       (std::abs(cxay) + std::abs(axcy)) * std::abs(bz) +
                       (std::abs(axby) + std::abs(bxay)) * std::abs(cz);
-  const double bound = kFilter3d * size + kUnderflow;
+  const double bound = kFilter3d * size;
   if (determinant > bound) return 1;
   if (determinant < -bound) return -1;
   if (size == 0) return 0;  // a difference of 0 in each product, as in a plane across an axis: cloth starts in such
@@ -90,16 +90,11 @@ Two ExactProduct(double a, double b) {
 
 /// h = e + f, and its length: at most m + n. By merging (fast expansion sum, theorem 13). h is neither e nor f.
 int Sum(const double* e, int m, const double* f, int n, double* h) {
-  int i = 0, j = 0, length = 0;
-  const auto next = [&] {
-    if (j == n || (i < m && std::abs(e[i]) <= std::abs(f[j]))) return e[i++];
-    return f[j++];
-  };
-  if (m + n == 0) return 0;
-  double q = next();
-  for (bool second = true; i < m || j < n; second = false) {
-    const double g = next();
-    const Two sum = second ? ExactSumOrdered(g, q) : ExactSum(q, g);
+  int length = 0;
+  double q = 0;
+  for (int i = 0, j = 0; i + j < m + n;) {
+    const bool ofE = j == n || (i < m && std::abs(e[i]) <= std::abs(f[j]));
+    const Two sum = ExactSum(q, ofE ? e[i++] : f[j++]);
     if (sum.low != 0) h[length++] = sum.low;
     q = sum.high;
   }
@@ -259,7 +254,7 @@ int Orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 int Orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double left = (a.x - c.x) * (b.y - c.y), right = (a.y - c.y) * (b.x - c.x);
   const double determinant = left - right;
-  const double bound = kFilter2d * (std::abs(left) + std::abs(right)) + kUnderflow;
+  const double bound = kFilter2d * (std::abs(left) + std::abs(right));
   if (determinant > bound) return 1;
   if (determinant < -bound) return -1;
   if (left == 0 && right == 0) return 0;

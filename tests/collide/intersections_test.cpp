@@ -197,6 +197,24 @@ TEST_CASE("long thin triangles across all axes: all pairs, and not each with eac
   }
 }
 
+TEST_CASE("triangles that touch others halfway along their long sides, where bounds in another frame are rounded") {
+  const Vec3 along{1, 2, 3}, across{-0.0078125, 0.00390625, 0}, up{-0.00390625, -0.0078125, 0.0078125};
+  SplitMix64 random(16);
+  Mesh mesh;
+  for (int k = 0; k < 300; ++k) {
+    const auto coordinate = [&] { return double(random.Next() % 4096) / 4; };
+    const double x = coordinate(), y = coordinate();
+    const Vec3 p{x, y, coordinate()}, middle = p + 0.5 * along;  // exact
+    const Vec3 side = k % 2 == 0 ? across : up;
+    const std::int32_t first = mesh.vertices();
+    mesh.x.insert(mesh.x.end(), {p, p + along, p + side, middle, middle - side, middle - 2.0 * side + 0.25 * along});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first + 3, first + 4, first + 5});
+  }
+  CHECK(Judge(mesh).count >= 600);
+  CheckAgainstBruteForce(mesh);
+}
+
 TEST_CASE("two sheets that cross, that touch, and that do not") {
   for (const int n : {2, 5, 20}) {
     const double h = 1.0 / (n - 1);

@@ -26,13 +26,14 @@ class Whole {
   }
   /// The double times 2^shift; its mantissa of 53 bits must come out whole.
   static Whole Of(double number, int shift) {
+    if (number == 0) return {};
     int exponent = 0;
     const double mantissa = std::frexp(number, &exponent);  // 53 bits: whole times 2^-53
     Whole whole(static_cast<std::int64_t>(std::ldexp(mantissa, 53)));
     int left = exponent - 53 + shift;
-    REQUIRE((left >= 0 || number == 0));
-    for (; left >= 32 && !whole.digits_.empty(); left -= 32) whole.digits_.insert(whole.digits_.begin(), 0);
-    return whole * Whole(std::int64_t{1} << std::max(left, 0));
+    if (left < 0) FAIL("the shift is too small");
+    for (; left >= 32; left -= 32) whole.digits_.insert(whole.digits_.begin(), 0);
+    return whole * Whole(std::int64_t{1} << left);
   }
 
   int Sign() const { return digits_.empty() ? 0 : negative_ ? -1 : 1; }
@@ -131,8 +132,9 @@ std::int64_t Uniform(SplitMix64& random, std::int64_t low, std::int64_t high) {
 
 /// A double of random digits, between 2^low and 2^high in size.
 double Wild(SplitMix64& random, int low, int high) {
-  const double mantissa = (1 + random.NextUnit()) * (random.Next() % 2 == 0 ? 1 : -1);
-  return std::ldexp(mantissa, static_cast<int>(Uniform(random, low, high)));
+  const double size = 1 + random.NextUnit();
+  const int exponent = static_cast<int>(Uniform(random, low, high));
+  return std::ldexp(random.Next() % 2 == 0 ? size : -size, exponent);
 }
 
 using Lattice = Point<std::int64_t>;
@@ -226,6 +228,27 @@ TEST_CASE("of points within rounding of a plane, with all digits in use, no sign
   CHECK(seen[2] > 10000);
 }
 
+TEST_CASE("of points within rounding of a line, with all digits in use, no sign is wrong") {
+  SplitMix64 random(9);
+  std::array<int, 3> seen{};
+  for (int i = 0; i < 60000; ++i) {
+    const double offset = i % 3 == 0 ? 1000.0 : 0.0;
+    const auto coordinate = [&] { return offset + 2 * random.NextUnit() - 1; };
+    std::array<Vec2, 3> p;
+    for (std::size_t k = 0; k < 2; ++k) p[k] = {coordinate(), coordinate()};
+    const double s = 3 * random.NextUnit() - 1;
+    p[2] = {p[0].x + s * (p[1].x - p[0].x), p[0].y + s * (p[1].y - p[0].y)};
+    std::swap(p[2], p[std::size_t(i % 3)]);
+    const int sign = ReferenceOrient2d(p, 120);
+    ++seen[std::size_t(1 + sign)];
+    if (Orient2d(p[0], p[1], p[2]) == sign && ExactOrient2d(p[0], p[1], p[2]) == sign) continue;
+    CHECK(Orient2d(p[0], p[1], p[2]) == sign);
+    CHECK(ExactOrient2d(p[0], p[1], p[2]) == sign);
+  }
+  CHECK(seen[0] > 10000);
+  CHECK(seen[2] > 10000);
+}
+
 TEST_CASE("of points in a plane whose differences do not fit into a double, no sign is wrong") {
   // p[3] is the middle of an edge, to the bit, of points of few digits at very different sizes: exactly 0. Moved by the
   // smallest step it is not.
@@ -234,7 +257,8 @@ TEST_CASE("of points in a plane whose differences do not fit into a double, no s
   for (int i = 0; i < 20000; ++i) {
     std::array<Vec3, 4> p;
     const auto coordinate = [&] {
-      return std::ldexp(double(Uniform(random, -9, 9)), static_cast<int>(Uniform(random, -22, 22)));
+      const auto digits = double(Uniform(random, -9, 9));
+      return std::ldexp(digits, static_cast<int>(Uniform(random, -22, 22)));
     };
     for (std::size_t k = 0; k < 3; ++k) p[k] = {coordinate(), coordinate(), coordinate()};
     p[3] = 0.5 * (p[0] + p[1]);
@@ -328,6 +352,26 @@ TEST_CASE("a segment and a triangle of a lattice meet just when their difference
     }
   }
   CHECK(meeting > 20000);
+}
+
+TEST_CASE("a segment along a side of a triangle, of so many digits that products are rounded") {
+  SplitMix64 random(10);
+  for (int i = 0; i < 20000; ++i) {
+    const auto corner = [&] {
+      constexpr std::int64_t kMost = std::int64_t{1} << 40;
+      const auto coordinate = [&] { return 8 * double(Uniform(random, -kMost, kMost)); };
+      const double x = coordinate(), y = coordinate();
+      return Vec3{x, y, coordinate()};
+    };
+    const Vec3 a = corner(), b = corner(), c = corner();
+    const double share = double(Uniform(random, 1, 12)) / 8;
+    const Vec3 q = a + share * (b - a);  // exact
+    const bool both = SegmentRunsOnTriangle(q, a, b, c) && SegmentRunsOnTriangle(q, a, c, b);
+    const bool none = SegmentRunsOnTriangle(a - share * (b - a), a, b, c);
+    if (both && !none) continue;
+    CHECK(both);
+    CHECK_FALSE(none);
+  }
 }
 
 TEST_CASE("a segment from a corner runs on a triangle just when the rest of it meets the triangle") {

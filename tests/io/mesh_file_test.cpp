@@ -343,3 +343,151 @@ TEST_CASE("What is no file") {
   Put(folder / "a.xyz", "v 0 0 0\n");
   CHECK_FALSE(ReadCacheInfo(folder / "a.xyz"));
 }
+
+namespace {
+
+/// Three frames of two cloths, of every second frame of a run, and what was written.
+std::vector<std::vector<Vec3>> WriteTwoCloths(const fs::path& file, int frames) {
+  Scene scene = SmallScene(5, 4);
+  scene.cloths.push_back(scene.cloths[0]);
+  scene.cloths[1].numWidthPoints = 3;
+  scene.cloths[1].origin = {0, 0.5, 0};
+  World world(scene, {.threads = 1});
+  auto writer = CacheWriter::Open(file, 0.25);
+  REQUIRE(writer);
+  std::vector<std::vector<Vec3>> written;
+  for (int frame = 0; frame < frames; ++frame) {
+    CHECK(writer->Add(world, 2 * frame));
+    written.emplace_back();
+    for (int c = 0; c < 2; ++c) {
+      const auto x = world.Cloth(c).positions();
+      written.back().insert(written.back().end(), x.begin(), x.end());
+    }
+    world.Step();
+    world.Step();
+  }
+  REQUIRE(writer->Finish());
+  return written;
+}
+
+/// All that went wrong when the frames of a file were read, or nothing.
+std::string ReadAll(const fs::path& file) {
+  auto reader = CacheReader::Open(file);
+  if (!reader) return Format(reader.diagnostics());
+  std::vector<Vec3> positions;
+  std::size_t vertices = 0;
+  for (const CacheReader::Cloth& cloth : reader->cloths()) {
+    vertices += std::size_t(cloth.vertices);
+    for (const Triangle& t : cloth.triangles) {
+      for (const std::int32_t v : {t.a, t.b, t.c}) CHECK((v >= 0 && v < cloth.vertices));
+    }
+  }
+  for (int frame = 0; frame < reader->frames(); ++frame) {
+    const auto number = reader->Next(positions);
+    if (!number) return Format(number.diagnostics());
+    CHECK(positions.size() == vertices);
+    for (const Vec3& x : positions) CHECK(IsFinite(x));
+  }
+  return "";
+}
+
+bool Contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("The frames of a cache come back as they were written") {
+  const Folder folder;
+  for (const char* name : {"a.pc2", "b.obj", "c.ply"}) {
+    CAPTURE(name);
+    const auto written = WriteTwoCloths(folder / name, 3);
+    auto reader = CacheReader::Open(folder / name);
+    REQUIRE_MESSAGE(reader, Format(reader.diagnostics()));
+    CHECK(reader.diagnostics().empty());
+    CHECK(reader->frames() == 3);
+    // A .ply does not say where a cloth ends.
+    const bool one = CacheKindOf(name) == CacheKind::Ply;
+    REQUIRE(reader->cloths().size() == (one ? 1 : 2));
+    CHECK(reader->cloths()[0].vertices == (one ? 32 : 20));
+    CHECK(reader->cloths()[0].triangles.size() == (one ? 36 : 24));
+    if (!one) {
+      CHECK(reader->cloths()[1].vertices == 12);
+      CHECK(reader->cloths()[1].triangles.size() == 12);
+      CHECK(reader->cloths()[1].triangles[0] == Triangle{0, 3, 1});
+    }
+    // Digits: floats, nine of them, all.
+    const double error = CacheKindOf(name) == CacheKind::Pc2 ? 1e-7 : CacheKindOf(name) == CacheKind::Obj ? 1e-8 : 0;
+    for (int frame = 0; frame < 3; ++frame) {
+      std::vector<Vec3> positions;
+      const auto number = reader->Next(positions);
+      REQUIRE_MESSAGE(number, Format(number.diagnostics()));
+      CHECK(*number == (CacheKindOf(name) == CacheKind::Pc2 ? frame : 2 * frame));
+      REQUIRE(positions.size() == 32);
+      for (std::size_t v = 0; v < 32; ++v) CHECK(Length(positions[v] - written[std::size_t(frame)][v]) <= error);
+    }
+  }
+}
+
+TEST_CASE("Meshes of other programs are one cloth, their polygons triangles") {
+  const Folder folder;
+  Put(folder / "a.obj", "o cloth1\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nf 1 2 3 4\no cloth0\nf 1 2 5\n");
+  auto reader = CacheReader::Open(folder / "a.obj");
+  REQUIRE_MESSAGE(reader, Format(reader.diagnostics()));
+  REQUIRE(reader->cloths().size() == 1);
+  CHECK(reader->cloths()[0].vertices == 5);
+  CHECK(reader->cloths()[0].triangles.size() == 3);
+}
+
+TEST_CASE("Caches that do not fit together are refused, with what was expected and found") {
+  const Folder folder;
+  CHECK(Contains(ReadAll(folder / "none.pc2"), "none.pc2: error: there is no such file"));
+  CHECK(Contains(ReadAll(folder / "none.obj"), "none.obj: error: there is no such file"));
+  CHECK(Contains(ReadAll(folder / "none.csv"), "no triangles; write the frames to .pc2, .obj or .ply"));
+  CHECK(Contains(ReadAll(folder / "none.xyz"), "ends in .pc2, .obj or .ply, got \".xyz\""));
+  fs::create_directory(folder / "folder.pc2");
+  CHECK(Contains(ReadAll(folder / "folder.pc2"), "got a folder"));
+
+  WriteTwoCloths(folder / "a.pc2", 2);
+  CHECK(ReadAll(folder / "a.pc2").empty());
+  const std::string good = Contents(folder / "a.pc2"), mesh = Contents(folder / "a.pc2.obj");
+  fs::rename(folder / "a.pc2.obj", folder / "b.obj");
+  CHECK(Contains(ReadAll(folder / "a.pc2"), "a.pc2.obj: error: there is no such file; \"a.pc2\" holds no triangles"));
+  Put(folder / "a.pc2.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  CHECK(Contains(ReadAll(folder / "a.pc2"), "\"a.pc2.obj\" has vertices, 3, got 32"));
+  Put(folder / "a.pc2.obj", mesh);
+  Put(folder / "a.pc2", good.substr(0, 28) + std::string(4, '\0'));
+  CHECK(Contains(ReadAll(folder / "a.pc2"), "expected at least one frame"));
+  std::string bad = good;
+  bad.replace(32 + 12 * 33, 4, std::string("\0\0\xc0\x7f", 4));
+  Put(folder / "a.pc2", bad);
+  CHECK(Contains(ReadAll(folder / "a.pc2"), "frame 1, point 1: expected a coordinate within 1000 km"));
+
+  WriteTwoCloths(folder / "c.ply", 3);
+  CHECK(ReadAll(folder / "c.ply").empty());
+  fs::copy_file(folder / "b.obj", folder / "d_0000.obj");
+  Put(folder / "d_0001.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  CHECK(Contains(ReadAll(folder / "d.obj"), "32 vertices and 36 faces, got another one, of 3 vertices and 1 face"));
+  Put(folder / "twice.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 2\n");
+  CHECK(Contains(ReadAll(folder / "twice.obj"), "the same vertex twice (0, 1, 1, counted from 0)"));
+}
+
+TEST_CASE("Whatever is done to the frames of a cache, they are read or refused") {
+  const Folder folder;
+  Random random{8};
+  for (const char* name : {"a.pc2", "a.obj", "a.ply"}) {
+    CAPTURE(name);
+    WriteTwoCloths(folder / name, CacheKindOf(name) == CacheKind::Pc2 ? 2 : 1);
+    const std::string good = Contents(folder / name);
+    int refused = 0;
+    for (int i = 0; i < 200; ++i) {
+      std::string bad = good;
+      if (i % 4 == 0) bad.resize(random() % good.size());
+      for (int k = i % 4; k > 0; --k)
+        bad[random() % std::min<std::size_t>(bad.size(), i % 8 < 4 ? 64 : bad.size())] = char(random());
+      Put(folder / name, bad);
+      refused += ReadAll(folder / name).empty() ? 0 : 1;
+    }
+    CHECK(refused >= 30);
+  }
+}
