@@ -63,18 +63,12 @@ void HeatMap::MeasureCloth(Quantity quantity, const ClothShape& cloth, std::vect
   std::transform(measured_.begin(), measured_.end(), values.begin(), [](double v) { return static_cast<float>(v); });
 }
 
-void FindContacts(const Scene& scene, std::span<const ClothShape> cloths, std::span<const Ball> balls,
+void FindContacts(const Scene& scene, std::span<const ClothShape> cloths, std::span<const Ball> balls, double time,
                   ContactFinder& finder) {
   std::vector<ContactCloth> all;
   for (std::size_t c = 0; c < cloths.size(); ++c)
     all.push_back({cloths[c].positions, cloths[c].rest, scene.cloths[c].thickness});
-  std::vector<SphereSettings> spheres = scene.spheres;
-  for (const Ball& ball : balls) {
-    spheres.emplace_back();
-    spheres.back().origin = ball.position;
-    spheres.back().radius = ball.radius;
-  }
-  finder.Find(all, spheres, scene.planes);
+  finder.Find(all, SolidsAt(scene, time, balls));
 }
 
 }  // namespace percale

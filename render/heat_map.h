@@ -36,8 +36,9 @@ class HeatMap {
                                     SteadySpan(0.01), SteadySpan(0.1),  SteadySpan(1)};
 };
 
-/// The contacts of cloths that are drawn, with each other, with the scene's colliders and with balls.
-void FindContacts(const Scene& scene, std::span<const ClothShape> cloths, std::span<const Ball> balls,
+/// The contacts of cloths that are drawn, with each other, with the colliders as they are at `time` [s], and with
+/// balls.
+void FindContacts(const Scene& scene, std::span<const ClothShape> cloths, std::span<const Ball> balls, double time,
                   ContactFinder& finder);
 
 }  // namespace percale

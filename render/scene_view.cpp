@@ -238,7 +238,7 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   Bounds casters;
   impl_->cloths.resize(cloths.size());
   if (view.cloths && (view.heatMap.quantity == Quantity::Contact || view.overlays.contacts))
-    FindContacts(scene, cloths, balls, impl_->contacts);
+    FindContacts(scene, cloths, balls, time, impl_->contacts);
   if (heat) impl_->heatMap.Measure(view.heatMap, cloths, impl_->contacts);
   list.heatScale = heat ? impl_->heatMap.scale() : HeatScale{};
   for (std::size_t i = 0; view.cloths && i < cloths.size(); ++i) {

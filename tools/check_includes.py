@@ -21,7 +21,7 @@ ROOMS = {
     "fabric": ["collide", "mesh", "math", "core"],
     "world": ["springs", "fabric", "collide", "mesh", "math", "core"],
     "io": ["world", "mesh", "math", "core"],
-    "render": ["io", "world", "mesh", "math", "core"],
+    "render": ["io", "world", "collide", "mesh", "math", "core"],
     "bench": ["io", "world", "springs", "fabric", "collide", "mesh", "math", "core"],
     "apps": ["bench", "render", "io", "world", "springs", "fabric", "collide", "mesh", "math", "core"],
 }

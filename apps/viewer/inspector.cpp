@@ -82,13 +82,8 @@ void Facts(const Session& session, const UiState& state, const VertexRef& ref) {
     cloths.push_back(
         {snapshot.cloths[c].positions, snapshot.cloths[c].topology->rest, snapshot.scene->cloths[c].thickness});
   }
-  std::vector<SphereSettings> spheres = snapshot.scene->spheres;
-  for (const Ball& ball : snapshot.balls) {
-    spheres.emplace_back();
-    spheres.back().origin = ball.position;
-    spheres.back().radius = ball.radius;
-  }
-  const ContactCount contacts = CountContacts(ref, cloths, spheres, snapshot.scene->planes);
+  const std::vector<PlacedSolid> solids = SolidsAt(*snapshot.scene, snapshot.report.time, snapshot.balls);
+  const ContactCount contacts = CountContacts(ref, cloths, solids);
   fact("Contacts", Text("%d cloth, %d colliders", contacts.cloth, contacts.colliders));
 }
 

@@ -410,7 +410,7 @@ void ParameterRow(Session& session, UiState& state, std::string_view group, std:
     case ValueKind::Choice:
       return Choice(session, state, target);
     case ValueKind::Vector:
-      if (group == "look" && name == "color") return ColorPicker(session, state, target);
+      if (name == "color" || name == "back_color") return ColorPicker(session, state, target);
       return Vector(session, state, target);
     case ValueKind::Text:
     case ValueKind::GridPoints:

@@ -52,11 +52,8 @@ bool TouchCloth(const ContactCloth& a, std::size_t p, const ContactCloth& b, std
   const double sheet = ContactFinder::kSheetShare * near;
   return &a != &b || SquaredLength(a.rest[q] - a.rest[p]) >= sheet * sheet;
 }
-bool Touches(const Vec3& p, const SphereSettings& sphere) {
-  return std::abs(Length(p - sphere.origin) - sphere.radius) <= ContactFinder::kTouchDistance;
-}
-bool Touches(const Vec3& p, const PlaneSettings& plane) {
-  return std::abs(Dot(p - plane.point, UnitOr(plane.normal, {0, 1, 0}))) <= ContactFinder::kTouchDistance;
+bool Touches(const Vec3& p, const PlacedSolid& solid) {
+  return std::abs(DistanceTo(solid, p).distance - solid.thickness) <= ContactFinder::kTouchDistance;
 }
 
 /// The cell itself, then half of those around it: of two neighbours one looks at the other.
@@ -152,8 +149,21 @@ void BoxFinder::Find(std::span<const ClothSettings> cloths, std::span<const std:
   }
 }
 
-void ContactFinder::Find(std::span<const ContactCloth> cloths, std::span<const SphereSettings> spheres,
-                         std::span<const PlaneSettings> planes) {
+std::vector<PlacedSolid> SolidsAt(const Scene& scene, double time, std::span<const Ball> balls) {
+  std::vector<PlacedSolid> solids;
+  ListSolids(scene, time, solids);
+  if (scene.simulation.engine == Engine::Springs)
+    std::erase_if(solids, [](const PlacedSolid& solid) { return solid.collider >= 0; });
+  for (const Ball& ball : balls) {
+    SphereSettings sphere;
+    sphere.origin = ball.position;
+    sphere.radius = ball.radius;
+    solids.push_back({MakeSolid(sphere), PoseOf(sphere), 0, 0, -1});
+  }
+  return solids;
+}
+
+void ContactFinder::Find(std::span<const ContactCloth> cloths, std::span<const PlacedSolid> solids) {
   positions_.clear();
   firstPoint_.assign(1, 0);
   pairs_.clear();
@@ -163,14 +173,9 @@ void ContactFinder::Find(std::span<const ContactCloth> cloths, std::span<const S
   }
   contacts_.assign(positions_.size(), Contact::None);
   FindPairs(cloths);
-  for (const SphereSettings& sphere : spheres) {
+  for (const PlacedSolid& solid : solids) {
     for (std::size_t p = 0; p < positions_.size(); ++p) {
-      if (Touches(positions_[p], sphere)) contacts_[p] = Contact::Collider;
-    }
-  }
-  for (const PlaneSettings& plane : planes) {
-    for (std::size_t p = 0; p < positions_.size(); ++p) {
-      if (Touches(positions_[p], plane)) contacts_[p] = Contact::Collider;
+      if (Touches(positions_[p], solid)) contacts_[p] = Contact::Collider;
     }
   }
 }
@@ -250,7 +255,7 @@ void ContactFinder::FindPairs(std::span<const ContactCloth> cloths) {
 }
 
 ContactCount CountContacts(const VertexRef& point, std::span<const ContactCloth> cloths,
-                           std::span<const SphereSettings> spheres, std::span<const PlaneSettings> planes) {
+                           std::span<const PlacedSolid> solids) {
   ContactCount count;
   const ContactCloth& own = cloths[Index(point.cloth)];
   for (const ContactCloth& cloth : cloths) {
@@ -258,8 +263,7 @@ ContactCount CountContacts(const VertexRef& point, std::span<const ContactCloth>
       count.cloth += TouchCloth(own, Index(point.vertex), cloth, q);
   }
   const Vec3& at = own.positions[Index(point.vertex)];
-  for (const SphereSettings& sphere : spheres) count.colliders += Touches(at, sphere);
-  for (const PlaneSettings& plane : planes) count.colliders += Touches(at, plane);
+  for (const PlacedSolid& solid : solids) count.colliders += Touches(at, solid);
   return count;
 }
 

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "collide/boxes.h"
+#include "collide/poses.h"
 #include "mesh/engine_types.h"
+#include "percale/interaction.h"
 #include "percale/mesh.h"
 #include "percale/scene.h"
 
@@ -78,6 +80,9 @@ struct ContactPair {
   VertexRef a, b;
 };
 
+/// What cloth may touch at `time` [s]: the colliders of the scene that its engine heeds, without meshes, and the balls.
+std::vector<PlacedSolid> SolidsAt(const Scene& scene, double time, std::span<const Ball> balls);
+
 /// Who touches whom: a search through all points, apart from the one that simulates.
 class ContactFinder {
  public:
@@ -87,14 +92,14 @@ class ContactFinder {
   /// ... unless they belong together: points of one cloth whose distance at rest is less than this times
   /// as large. Those are each other's spring neighbours, or as close.
   static constexpr double kSheetShare = 2.5;
-  /// A point touches a collider at this distance from its surface, on either side [m]: a point on its way
-  /// along it is put back a little off.
+  /// A point touches a collider at this distance from its surface, or from where its thickness ends, on either side
+  /// [m]: a point on its way along it is put back a little off.
   static constexpr double kTouchDistance = 2e-3;
   /// No more pairs than these are listed.
   static constexpr std::size_t kMostPairs = 100'000;
 
-  void Find(std::span<const ContactCloth> cloths, std::span<const SphereSettings> spheres,
-            std::span<const PlaneSettings> planes);
+  /// `solids`: the colliders, see SolidsAt.
+  void Find(std::span<const ContactCloth> cloths, std::span<const PlacedSolid> solids);
 
   /// Per vertex of a cloth. A collider hides what else it touches.
   std::span<const Contact> Of(int cloth) const;
@@ -121,6 +126,6 @@ struct ContactCount {
   int cloth = 0, colliders = 0;
 };
 ContactCount CountContacts(const VertexRef& point, std::span<const ContactCloth> cloths,
-                           std::span<const SphereSettings> spheres, std::span<const PlaneSettings> planes);
+                           std::span<const PlacedSolid> solids);
 
 }  // namespace percale

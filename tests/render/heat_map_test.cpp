@@ -193,7 +193,9 @@ TEST_CASE("normals, contacts and boxes are the lines that they should be") {
   const std::vector<Vec3> a = {{0, 0, 0}}, b = {{0, 0, 0.01}};
   const std::vector<ContactCloth> cloths = {{a, a, 0.01}, {b, b, 0.01}};
   ContactFinder contacts;
-  contacts.Find(cloths, std::vector<SphereSettings>{{{0, 1, 0}, 1, 0}}, {});
+  Scene ball;
+  ball.spheres = {{{0, 1, 0}, 1, 0}};
+  contacts.Find(cloths, SolidsAt(ball, 0, {}));
   ClothShape shapes[2];
   shapes[0].positions = a;
   shapes[1].positions = b;

@@ -59,11 +59,12 @@ TEST_CASE("measuring does not allocate once it is warm") {
   std::vector<double> a(count), b(count), ratios;
   CurvatureMeter curvature;
   ContactFinder contacts;
+  const std::vector<PlacedSolid> solids = SolidsAt(world.scene(), world.report().time, world.balls());
   const auto measure = [&] {
     MeasureStretch(cloth.positions(), cloth.springs(), cloth.restLengths(), a, b);
     MeasureSpeed(cloth.velocities(), a);
     curvature.Measure(cloth.positions(), cloth.triangles(), a);
-    contacts.Find({&contactCloth, 1}, world.scene().spheres, world.scene().planes);
+    contacts.Find({&contactCloth, 1}, solids);
     ratios.clear();
     AppendStretch(cloth.positions(), cloth.springs(), cloth.restLengths(), ratios);
     Percentile(ratios, 0.99);

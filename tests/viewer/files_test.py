@@ -154,6 +154,21 @@ class Editing(ViewerTest):
             self.assertEqual(message["line"], 5)
             self.assertEqual(viewer.step()["frame"], 2)
 
+    def test_the_mesh_of_a_collider_is_read_again_when_it_is_saved(self):
+        mesh, corners = os.path.join(self.root, "scene", "tent.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+        write(mesh, corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+        self.scene = os.path.join(self.root, "scene", "tent.json")
+        write(self.scene, json.dumps({"simulation": {"engine": "fabric"}, "cloth": {"pinned": [[0, 0]]},
+                                      "collider": {"shape": "mesh", "mesh": "tent.obj"}}))
+        with self.open() as viewer:
+            self.assertEqual(viewer.count("message"), 0)
+            viewer.step()
+            since = viewer.mark()
+            write(mesh, corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\n")
+            viewer.wait("reload", since, what="scene")
+            message = viewer.wait("message", since, severity="warning")
+            self.assertIn("the mesh is open: 3 edges", message["text"])
+
     def test_a_broken_scene_leaves_the_old_one(self):
         with self.open() as viewer:
             with open(self.scene, encoding="utf-8") as file:

@@ -227,6 +227,42 @@ class HandTest(ViewerTest):
             moved = viewer.wait("set", since, path="/plane/0/point", where=lambda e: e["value"][1] > 0.05)
             self.assertEqual([moved["value"][0], moved["value"][2]], [0, 0])
 
+    def test_colliders_of_other_shapes_are_moved_as_spheres_are(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "wall.obj"), "w", encoding="ascii") as file:
+                file.write("v 0 0 0\nv 0.3 0 0\nv 0.3 0.3 0\nv 0 0.3 0\nf 1 2 3 4\n")
+            path = os.path.join(folder, "a.json")
+            with open(path, "w", encoding="ascii") as file:
+                # The box has been turned by half a turn about (0.5, 0.5) when the time is over: what follows the
+                # pointer to the right is its position to the left.
+                json.dump({"simulation": {"engine": "fabric", "gravity": [0, 0, 0]},
+                           "cloth": {"origin": [0, 5, 0], "num_width_points": 4, "num_height_points": 4},
+                           "collider": [{"shape": "box", "position": [0.8, 0.3, 0], "size": [0.2, 0.2, 0.2]},
+                                        {"shape": "mesh", "mesh": "wall.obj", "position": [0.6, 0.1, 0],
+                                         "two_sided": True},
+                                        {"shape": "torus", "position": [0.2, 0.2, 0], "rotation": [90, 0, 0],
+                                         "radius": 0.15}],
+                           "collider_motion": {"end": 0.01, "axis": [0, 0, 1], "angle": 180, "centre": [0.5, 0.5, 0]},
+                           "camera": {"target": [0.5, 0.5, 0], "distance": 2}}, file)
+            with self.viewer(path, "--shader", "Phong") as viewer:
+                viewer.step()
+                eye = Eye(viewer, (0.5, 0.5, 0), 2)
+                since = self.drag(viewer, eye.at(0.2, 0.7, 0.1), eye.at(0.3, 0.7, 0.1))
+                viewer.wait("set", since, path="/collider/0/position", where=lambda e: e["value"][0] < 0.75)
+                viewer.settle()
+                position = [e for e in viewer.events if e["event"] == "set"][-1]["value"]
+                for found, expected in zip(position, (0.7, 0.3, 0)):
+                    self.assertAlmostEqual(found, expected, delta=0.01)
+                since = self.drag(viewer, eye.at(0.75, 0.25, 0), eye.at(0.75, 0.35, 0))
+                moved = viewer.wait("set", since, path="/collider/1/position", where=lambda e: e["value"][1] > 0.15)
+                self.assertAlmostEqual(moved["value"][0], 0.6, delta=0.01)
+                # Through the hole one grips nothing, but the tube.
+                since = self.drag(viewer, eye.at(0.2, 0.2, 0), eye.at(0.3, 0.2, 0))
+                viewer.settle()
+                self.assertEqual(viewer.count("set", since), 0)
+                since = self.drag(viewer, eye.at(0.2, 0.35, 0.05), eye.at(0.3, 0.35, 0.05))
+                viewer.wait("set", since, path="/collider/2/position", where=lambda e: e["value"][0] > 0.25)
+
     def test_a_mesh_is_pinned_and_dragged_as_a_grid_is(self):
         # A standing square of four triangles around vertex 1; vertex 0 belongs to nothing.
         with tempfile.TemporaryDirectory() as folder:

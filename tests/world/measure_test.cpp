@@ -174,7 +174,7 @@ TEST_CASE("a flat sheet touches nothing, a folded one itself") {
   const ClothModel model = MakeGrid(Sheet(41));  // spacing 25 mm
   const double thickness = 0.0095;
   ContactFinder finder;
-  finder.Find(std::vector<ContactCloth>{{model.start, model.start, thickness}}, {}, {});
+  finder.Find(std::vector<ContactCloth>{{model.start, model.start, thickness}}, {});
   CHECK(finder.pairs().empty());
 
   // Folded in the middle: the layers lie 18 mm apart, point over point.
@@ -182,7 +182,7 @@ TEST_CASE("a flat sheet touches nothing, a folded one itself") {
     return uv.x <= 0.5 ? Vec3{uv.x, 0, uv.y} : Vec3{1 - uv.x, 0.018, uv.y};
   });
   const std::vector<ContactCloth> cloths = {{folded, model.start, thickness}};
-  finder.Find(cloths, {}, {});
+  finder.Find(cloths, {});
   CHECK(Found(finder) == BruteForce(cloths));
   const std::span<const Contact> contacts = finder.Of(0);
   REQUIRE(contacts.size() == folded.size());
@@ -206,7 +206,7 @@ TEST_CASE("pairs of contact are those that comparing every point with every othe
   const auto restA = scatter(400, 0.5), restB = scatter(300, 0.5);
   const std::vector<ContactCloth> cloths = {{a, restA, 0.01}, {b, restB, 0.004}, {c, c, 0.02}};
   ContactFinder finder;
-  finder.Find(cloths, {}, {});
+  finder.Find(cloths, {});
   const Pairs expected = BruteForce(cloths);
   CHECK(expected.size() > 100);
   CHECK(Found(finder) == expected);
@@ -221,11 +221,11 @@ TEST_CASE("pairs of contact are those that comparing every point with every othe
         const std::pair<int, int> point{cloth, int(v)};
         return pair.first == point || pair.second == point;
       });
-      CHECK(CountContacts({cloth, int(v)}, cloths, {}, {}).cloth == partners);
+      CHECK(CountContacts({cloth, int(v)}, cloths, {}).cloth == partners);
     }
   }
   // Cloth without thickness touches no cloth.
-  finder.Find(std::vector<ContactCloth>{{a, restA, 0}, {b, restB, 0}}, {}, {});
+  finder.Find(std::vector<ContactCloth>{{a, restA, 0}, {b, restB, 0}}, {});
   CHECK(finder.pairs().empty());
 }
 
@@ -245,20 +245,36 @@ TEST_CASE("boxes that points share") {
   CHECK(finder.boxes()[1].points == 2);
 }
 
-TEST_CASE("contact with spheres and planes, within the stated distance of the surface") {
+TEST_CASE("contact with colliders, within the stated distance of the surface") {
   const std::vector<Vec3> points = {{0, 0.5, 0}, {0, 0.5019, 0}, {0, 0.4981, 0}, {0, 0.503, 0},
                                     {2, 0, 0},   {2, 0.0019, 0}, {2, -0.0021, 0}};
   ContactFinder finder;
   const std::vector<ContactCloth> cloths = {{points, points, 0}};
-  finder.Find(cloths, std::vector<SphereSettings>{{{0, 0, 0}, 0.5, 0.3}},
-              std::vector<PlaneSettings>{{{7, 0, 7}, {0, 3, 0}, 0.5}});
+  Scene scene;
+  scene.spheres = {{{0, 0, 0}, 0.5, 0.3}};
+  scene.planes = {{{7, 0, 7}, {0, 3, 0}, 0.5}};
+  finder.Find(cloths, SolidsAt(scene, 0, {}));
   const std::span<const Contact> found = finder.Of(0);
   const std::vector<Contact> contacts(found.begin(), found.end());
-  const std::vector<SphereSettings> sphere = {{{0, 0.001, 0}, 0.5, 0.3}};
-  const std::vector<PlaneSettings> plane = {{{0, 0.5, 0}, {0, 3, 0}, 0.5}};
-  CHECK(CountContacts({0, 0}, cloths, sphere, plane).colliders == 2);
-  CHECK(CountContacts({0, 4}, cloths, sphere, plane).colliders == 0);
-  CHECK(CountContacts({0, 0}, cloths, sphere, plane).cloth == 0);
+  scene.spheres = {{{0, 0.001, 0}, 0.5, 0.3}};
+  scene.planes = {{{0, 0.5, 0}, {0, 3, 0}, 0.5}};
+  CHECK(CountContacts({0, 0}, cloths, SolidsAt(scene, 0, {})).colliders == 2);
+  CHECK(CountContacts({0, 4}, cloths, SolidsAt(scene, 0, {})).colliders == 0);
+  CHECK(CountContacts({0, 0}, cloths, SolidsAt(scene, 0, {})).cloth == 0);
+  CHECK(CountContacts({0, 4}, cloths, SolidsAt(scene, 0, std::vector<Ball>{{{2, 0.3, 0}, {}, 0.3, 1}})).colliders == 1);
   using enum Contact;
   CHECK(contacts == std::vector<Contact>{Collider, Collider, Collider, None, Collider, Collider, None});
+
+  // A box whose top comes up to the first point's height, and keeps cloth 0.1 m farther off.
+  scene = {};
+  scene.simulation.engine = Engine::Fabric;
+  scene.colliders.resize(1);
+  scene.colliders[0].shape = ColliderShape::Box;
+  scene.colliders[0].thickness = 0.1;
+  scene.colliderMotions.resize(1);
+  scene.colliderMotions[0].displacement = {0, 0.2, 0};
+  CHECK(CountContacts({0, 0}, cloths, SolidsAt(scene, 0, {})).colliders == 0);
+  CHECK(CountContacts({0, 0}, cloths, SolidsAt(scene, 1, {})).colliders == 1);
+  scene.simulation.engine = Engine::Springs;
+  CHECK(CountContacts({0, 0}, cloths, SolidsAt(scene, 1, {})).colliders == 0);
 }
