@@ -22,7 +22,7 @@ namespace {
 // The file, little-endian: the mark; the version; the number of bytes that follow, but for the checksum;
 // these bytes, as `Exchange` below lists them; their checksum.
 constexpr std::string_view kMark = "Percale\x1a";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::size_t kHeader = kMark.size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 36;
 
@@ -119,6 +119,13 @@ void Exchange(Stream& stream, F& fold) requires std::is_same_v<std::remove_const
   stream.Number(fold.rest);
   stream.Number(fold.moved);
 }
+template <class Stream, class T>
+void Exchange(Stream& stream, T& touch) requires std::is_same_v<std::remove_const_t<T>, Touch> {
+  stream.Number(touch.kind);
+  for (auto& number : touch.number) stream.Number(number);
+  Exchange(stream, touch.slide);
+  stream.Number(touch.force);
+}
 template <class Stream, class List>
 void ExchangeList(Stream& stream, List& list) {
   std::uint64_t count = list.size();
@@ -156,6 +163,8 @@ void ExchangeState(Stream& stream, State& state) {
     ExchangeList(stream, cloth.anchors);
     ExchangeList(stream, cloth.folds);
   }
+  ExchangeList(stream, state.touches);
+  ExchangeList(stream, state.obstacles);
   ExchangeList(stream, state.handles);
   ExchangeList(stream, state.balls);
   ExchangeList(stream, state.gusts);
@@ -192,6 +201,11 @@ std::string Impossible(const WorldState& state) {
     }
     sizes.push_back(points);
   }
+  for (const Touch& touch : state.touches) {
+    if (touch.kind < 0 || touch.kind > 2 || !IsFinite(touch.slide) || !std::isfinite(touch.force) || touch.force < 0)
+      return "a contact is none";
+  }
+  if (!AllFinite(state.obstacles)) return "a collider has a position that is no number";
   for (const Handle& handle : state.handles) {
     const auto cloth = static_cast<std::size_t>(handle.cloth);
     if (handle.cloth < 0 || cloth >= sizes.size() || handle.vertex < 0 ||

@@ -2,7 +2,10 @@
 /// \file
 /// The elements of a mesh, as indices of its vertices.
 
+#include <array>
 #include <cstdint>
+
+#include "percale/vec3.h"
 
 namespace percale {
 
@@ -20,6 +23,16 @@ struct Fold {
   double rest = 0;   ///< Angle that it bends back to [rad]; 0: flat.
   double moved = 0;  ///< By how much that has moved, in all [rad].
   friend bool operator==(const Fold&, const Fold&) = default;
+};
+
+/// Two things in contact at the end of a step, and how friction between them is strained.
+struct Touch {
+  std::int32_t kind = 0;                 ///< 0: a vertex and a triangle; 1: two edges; 2: a vertex and a solid.
+  std::array<std::int32_t, 4> number{};  ///< Their vertices, of all cloths and then of obstacles; or the vertex and the
+                                         ///< number of the solid.
+  Vec3 slide;                            ///< Way along each other that friction springs back from [m].
+  double force = 0;                      ///< That presses them together [N].
+  friend bool operator==(const Touch&, const Touch&) = default;
 };
 
 }  // namespace percale

@@ -109,6 +109,9 @@ struct WorldState {
   StepReport report;
   int restFrames = 0;  ///< For how many frames on end no point has moved more than 1 mm.
   std::vector<Cloth> cloths;
+  std::vector<Touch> touches;   ///< Engine::Fabric: what touches.
+  std::vector<Vec3> obstacles;  ///< Engine::Fabric: where the vertices of colliders were a step before, then where they
+                                ///< are [m]: cloth that is in the way may hold them up.
   std::vector<Handle> handles;
   std::vector<Ball> balls;
   std::vector<Gust> gusts;

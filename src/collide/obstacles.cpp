@@ -71,7 +71,8 @@ Obstacles::Obstacles(const Scene& scene) {
       if (!collider.loaded) continue;
       const RestMesh& mesh = collider.loaded->mesh;
       obstacle.local = mesh.positions;
-      for (const Triangle& t : mesh.triangles) triangles_.push_back({t.a + vertices_, t.b + vertices_, t.c + vertices_});
+      for (const Triangle& t : mesh.triangles)
+        triangles_.push_back({t.a + vertices_, t.b + vertices_, t.c + vertices_});
     } else {
       Features features = FeaturesOf(collider);
       obstacle.local = std::move(features.vertices);
@@ -91,7 +92,8 @@ void Obstacles::AddTo(ContactMesh& mesh) const {
     mesh.place.insert(mesh.place.end(), obstacle.local.begin(), obstacle.local.end());
   }
   for (const Triangle& t : triangles_) mesh.triangles.push_back({t.a + first, t.b + first, t.c + first});
-  for (const Edge& e : BuildTopology(Index(vertices_), triangles_).edges) mesh.edges.push_back({e.a + first, e.b + first});
+  for (const Edge& e : BuildTopology(Index(vertices_), triangles_).edges)
+    mesh.edges.push_back({e.a + first, e.b + first});
   for (const Edge& e : edges_) mesh.edges.push_back({e.a + first, e.b + first});
 }
 

@@ -38,9 +38,9 @@ class Obstacles {
 
  private:
   std::vector<Obstacle> all_;
-  std::vector<ColliderShape> shapes_;                       // per collider of the scene
+  std::vector<ColliderShape> shapes_;                      // per collider of the scene
   std::vector<std::shared_ptr<const LoadedMesh>> meshes_;  // per collider
-  std::vector<Edge> edges_;                                 // without triangles; of vertices of all obstacles
+  std::vector<Edge> edges_;                                // without triangles; of vertices of all obstacles
   std::vector<Triangle> triangles_;
   int vertices_ = 0;
 };

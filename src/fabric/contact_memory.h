@@ -41,6 +41,14 @@ class ContactMemory {
     return entry.used ? &entry.stick : nullptr;
   }
 
+  /// Calls body(key, stick) for all, in any order.
+  template <class Body>
+  void ForAll(Body&& body) const {
+    for (const Entry& entry : entries_) {
+      if (entry.used) body(entry.key, entry.stick);
+    }
+  }
+
  private:
   struct Entry {
     ContactKey key;

@@ -158,8 +158,13 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
     begin_[cloth + v] = start_[cloth + v] = obstacle_[v];
     way_[cloth + v] = obstacleTarget_[v] - obstacle_[v];
   }
-  contacts_.Begin(
-      {.begin = begin_, .start = start_, .way = way_, .free = free, .mass = model_.mass, .h = h, .surfaces = surfaces_});
+  contacts_.Begin({.begin = begin_,
+                   .start = start_,
+                   .way = way_,
+                   .free = free,
+                   .mass = model_.mass,
+                   .h = h,
+                   .surfaces = surfaces_});
   contacts_.AddPairs(PairKind::VertexTriangle, safeMove_.vertexTriangle());
   contacts_.AddPairs(PairKind::EdgeEdge, safeMove_.edgeEdge());
   for (std::size_t s = 0; s < solids_.size(); ++s) {
@@ -214,6 +219,20 @@ SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end)
 
 void ContactStep::End(std::span<const Vec3> y) {
   contacts_.End(y);
+}
+
+void ContactStep::ReadState(std::vector<Touch>& touches, std::vector<Vec3>& obstacles) const {
+  contacts_.ReadMemory(touches);
+  obstacles.assign(obstacleBefore_.begin(), obstacleBefore_.end());
+  obstacles.insert(obstacles.end(), obstacle_.begin(), obstacle_.end());
+}
+
+void ContactStep::WriteState(std::span<const Touch> touches, std::span<const Vec3> obstacles) {
+  contacts_.WriteMemory(touches);
+  if (obstacles.size() != 2 * obstacle_.size()) return;
+  const auto middle = obstacles.begin() + static_cast<std::ptrdiff_t>(obstacle_.size());
+  std::copy(obstacles.begin(), middle, obstacleBefore_.begin());
+  std::copy(middle, obstacles.end(), obstacle_.begin());
 }
 
 std::int64_t ContactStep::CountSqueezed(std::span<const Vec3> y) const {

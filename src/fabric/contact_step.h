@@ -47,6 +47,11 @@ class ContactStep {
   /// squeezed gives way to colliders, and they to it, but never cloth to cloth.
   std::int64_t CountSqueezed(std::span<const Vec3> y) const;
 
+  /// What touches, and where the vertices of obstacles were a step ago, then where they are.
+  void ReadState(std::vector<Touch>& touches, std::vector<Vec3>& obstacles) const;
+  /// The same, set, after a Restart; obstacles of another number are left where they are.
+  void WriteState(std::span<const Touch> touches, std::span<const Vec3> obstacles);
+
   Contacts& contacts() { return contacts_; }
   const Contacts& contacts() const { return contacts_; }
 

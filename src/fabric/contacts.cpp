@@ -115,6 +115,22 @@ void Contacts::Fit(double gap, double distance, double approach, Contact& c) con
   c.distance = 1.5 * fit;
 }
 
+void Contacts::ReadMemory(std::vector<Touch>& touches) const {
+  touches.clear();
+  memory_.ForAll([&](const ContactKey& key, const Stick& stick) {
+    touches.push_back({static_cast<std::int32_t>(key.kind), key.number, ToVec3(stick.slide), stick.force});
+  });
+  std::sort(touches.begin(), touches.end(),
+            [](const Touch& a, const Touch& b) { return a.kind != b.kind ? a.kind < b.kind : a.number < b.number; });
+}
+
+void Contacts::WriteMemory(std::span<const Touch> touches) {
+  memory_.Clear(touches.size());
+  for (const Touch& touch : touches) {
+    memory_.Put({static_cast<ContactKey::Kind>(touch.kind), touch.number}, {From<double>(touch.slide), touch.force});
+  }
+}
+
 double Contacts::FrictionOf(const ContactSurface& a, const ContactSurface& b) const {
   if (a.rulesFriction) return a.friction;
   if (b.rulesFriction) return b.friction;
@@ -247,23 +263,17 @@ void Contacts::AddGradient(std::span<const Vec3> y, std::span<Vec3> gradient) co
   }
 }
 
-std::span<const ExtraBlock> Contacts::Blocks() {
-  blocks_.clear();
+std::span<const ExtraTerm> Contacts::Terms() {
+  terms_.clear();
   for (const Contact& c : contacts_) {
     if (!c.active) continue;
-    Matrix3<double> whole = Outer(c.normal, c.normal) * (c.stiffness - c.drag) + Diagonal(c.drag);
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = i; j < 4; ++j) {
-        const double weight = c.weight[i] * c.weight[j];
-        if (c.vertex[i] < 0 || c.vertex[j] < 0 || weight == 0) continue;
-        ExtraBlock& block = blocks_.emplace_back();
-        block.row = c.vertex[i];
-        block.column = c.vertex[j];
-        for (std::size_t k = 0; k < 9; ++k) block.block[k] = static_cast<Real>(whole.m[k] * weight);  // symmetric
-      }
-    }
+    const Matrix3<double> block = Outer(c.normal, c.normal) * (c.stiffness - c.drag) + Diagonal(c.drag);
+    ExtraTerm& term = terms_.emplace_back();
+    term.vertex = c.vertex;
+    for (std::size_t k = 0; k < 4; ++k) term.weight[k] = static_cast<Real>(c.weight[k]);
+    for (std::size_t k = 0; k < 9; ++k) term.block[k] = static_cast<Real>(block.m[k]);
   }
-  return blocks_;
+  return terms_;
 }
 
 void Contacts::End(std::span<const Vec3> y) {

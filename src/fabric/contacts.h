@@ -73,11 +73,15 @@ class Contacts {
   double Update(std::span<const Vec3> y);
   /// Of what is active.
   void AddGradient(std::span<const Vec3> y, std::span<Vec3> gradient) const;
-  std::span<const ExtraBlock> Blocks();
+  /// What they add to the second derivative.
+  std::span<const ExtraTerm> Terms();
   /// Remembers what sticks where the step has ended.
   void End(std::span<const Vec3> y);
   /// Forgets what stuck.
   void Clear();
+  /// What is remembered, ascending by what touches; and the same, set.
+  void ReadMemory(std::vector<Touch>& touches) const;
+  void WriteMemory(std::span<const Touch> touches);
 
   std::span<const Contact> all() const { return contacts_; }
 
@@ -96,7 +100,7 @@ class Contacts {
   std::vector<Contact> contacts_;
   std::vector<std::uint8_t> kept_;  // per pair while they are added
   std::vector<Contact> found_;
-  std::vector<ExtraBlock> blocks_;
+  std::vector<ExtraTerm> terms_;
   ContactMemory memory_, nextMemory_;
   bool first_ = true;  // no Update yet in this step
 };

@@ -56,6 +56,10 @@ class FabricEngine {
   void ReadState(int cloth, std::span<Vec3> positions, std::span<Vec3> previous) const;
   /// The folds of a cloth that may set, by hinge; none where none may.
   void ReadFolds(int cloth, std::vector<Fold>& folds) const;
+  /// What touches, and where the vertices of colliders were and are.
+  void ReadContact(std::vector<Touch>& touches, std::vector<Vec3>& obstacles) const {
+    contact_->ReadState(touches, obstacles);
+  }
   /// Where the pins of a cloth are held apart from their motions [m], by vertex.
   void ReadAnchors(int cloth, std::vector<Vec3>& anchors) const;
   /// Puts a cloth into the state that it has at `time` [s].
@@ -63,6 +67,10 @@ class FabricEngine {
                   std::span<const Vec3> anchors, double time);
   /// The same, set; none, or another number of them: all as they were made.
   void WriteFolds(int cloth, std::span<const Fold> folds);
+  /// The same, set; after the state of all cloths.
+  void WriteContact(std::span<const Touch> touches, std::span<const Vec3> obstacles) {
+    contact_->WriteState(touches, obstacles);
+  }
   /// The greatest stretch of a triangle: the larger singular value of its deformation gradient.
   Stretch GreatestStretch() const;
   double ElasticEnergy();                           ///< [J]

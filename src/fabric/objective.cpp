@@ -257,7 +257,7 @@ double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gr
   if (contacts_) {
     const double before = contacts_->Energy(y);
     change = contacts_->Update(y) - before;
-    matrix.SetExtra(contacts_->Blocks(), executor_);
+    matrix.SetExtra(contacts_->Terms(), executor_);
   }
   EvaluateTriangles(y, true);
   Gather(y, gradient);

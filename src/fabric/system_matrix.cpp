@@ -166,55 +166,61 @@ void SystemMatrix::Reset(const Executor& executor) {
   });
 }
 
-void SystemMatrix::SetExtra(std::span<const ExtraBlock> blocks, const Executor& executor) {
+void SystemMatrix::SetExtra(std::span<const ExtraTerm> terms, const Executor& executor) {
   const int n = rows();
-  const auto counts = [&](const ExtraBlock& b) { return !Pinned(b.row) && !Pinned(b.column); };
-  std::fill(extra_.end.begin(), extra_.end.end(), 0);
-  std::int32_t total = 0;
-  for (const ExtraBlock& b : blocks) {
-    if (!counts(b)) continue;
-    ++extra_.end[b.row], ++total;
-    if (b.row != b.column) ++extra_.end[b.column], ++total;
-  }
-  extra_.any = total > 0;
+  const auto counts = [&](const ExtraTerm& t, int k) {
+    return t.vertex[k] >= 0 && t.weight[k] != 0 && !Pinned(t.vertex[k]);
+  };
+  extra_.any = !terms.empty();
   if (!extra_.any) return;
-  std::int32_t next = 0;
-  for (int row = 0; row < n; ++row) {
-    extra_.begin[row] = next;
-    next += extra_.end[row];
-    extra_.end[row] = extra_.begin[row];
+  // Which terms each row is in, and room for a block per other vertex of each.
+  extraFirst_.assign(static_cast<std::size_t>(n) + 1, 0);
+  std::fill(extra_.end.begin(), extra_.end.end(), 0);
+  for (const ExtraTerm& t : terms) {
+    int vertices = 0;
+    for (int k = 0; k < 4; ++k) vertices += counts(t, k) ? 1 : 0;
+    for (int k = 0; k < 4; ++k) {
+      if (!counts(t, k)) continue;
+      ++extraFirst_[t.vertex[k] + 1];
+      extra_.end[t.vertex[k]] += vertices;
+    }
   }
-  Grow(extraOrder_, total);
-  Grow(extra_.column, total);
-  Grow(extra_.block, 9 * static_cast<std::size_t>(total) + 1);
-  // What goes where: twice the index of a given block, and one more where its transpose is meant.
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    if (!counts(blocks[k])) continue;
-    extraOrder_[extra_.end[blocks[k].row]++] = static_cast<std::int32_t>(2 * k);
-    if (blocks[k].row != blocks[k].column)
-      extraOrder_[extra_.end[blocks[k].column]++] = static_cast<std::int32_t>(2 * k + 1);
+  std::int32_t room = 0;
+  for (int row = 0; row < n; ++row) {
+    extraFirst_[row + 1] += extraFirst_[row];
+    extra_.begin[row] = room;
+    room += extra_.end[row];
+    extra_.end[row] = extraFirst_[row];  // for now: where the next of its terms goes
+  }
+  Grow(extraOrder_, extraFirst_[n]);
+  Grow(extra_.column, room);
+  Grow(extra_.block, 9 * static_cast<std::size_t>(room) + 1);
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    for (int k = 0; k < 4; ++k) {
+      if (counts(terms[t], k)) extraOrder_[extra_.end[terms[t].vertex[k]]++] = static_cast<std::int32_t>(4 * t + k);
+    }
   }
   executor.ForChunks(Chunks(n), [&](int chunk) {
     for (int row = chunk * kRowsPerChunk; row < std::min(n, (chunk + 1) * kRowsPerChunk); ++row) {
-      const auto columnOf = [&](std::int32_t order) {
-        return order % 2 ? blocks[order / 2].row : blocks[order / 2].column;
-      };
-      std::sort(extraOrder_.begin() + extra_.begin[row], extraOrder_.begin() + extra_.end[row],
-                [&](std::int32_t a, std::int32_t b) {
-                  return columnOf(a) != columnOf(b) ? columnOf(a) < columnOf(b) : a < b;
-                });
-      std::int32_t last = extra_.begin[row] - 1;
-      for (std::int32_t k = extra_.begin[row]; k < extra_.end[row]; ++k) {
-        const std::int32_t order = extraOrder_[k];
-        if (last < extra_.begin[row] || extra_.column[last] != columnOf(order)) {
-          extra_.column[++last] = columnOf(order);
-          std::fill_n(&extra_.block[9 * static_cast<std::size_t>(last)], 9, Real{0});
+      const std::int32_t begin = extra_.begin[row];
+      std::int32_t end = begin;
+      for (std::int32_t e = extraFirst_[row]; e < extraFirst_[row + 1]; ++e) {
+        const ExtraTerm& term = terms[extraOrder_[e] / 4];
+        const Real own = term.weight[extraOrder_[e] % 4];
+        for (int k = 0; k < 4; ++k) {
+          if (!counts(term, k)) continue;
+          std::int32_t at = begin;
+          while (at < end && extra_.column[at] != term.vertex[k]) ++at;
+          Real* sum = &extra_.block[9 * static_cast<std::size_t>(at)];
+          if (at == end) {
+            extra_.column[end++] = term.vertex[k];
+            std::fill_n(sum, 9, Real{0});
+          }
+          const Real weight = own * term.weight[k];
+          for (int c = 0; c < 9; ++c) sum[c] += weight * term.block[c];
         }
-        Real* sum = &extra_.block[9 * static_cast<std::size_t>(last)];
-        const std::array<Real, 9>& from = blocks[order / 2].block;
-        for (int c = 0; c < 9; ++c) sum[c] += order % 2 ? from[c % 3 * 3 + c / 3] : from[c];
       }
-      extra_.end[row] = last + 1;
+      extra_.end[row] = end;
     }
   });
 }
@@ -320,7 +326,8 @@ void SystemMatrix::ToDense(double* dense) const {
 std::size_t SystemMatrix::MemoryBytes() const {
   return Bytes(pattern_.first) + Bytes(pattern_.column) + Bytes(restFirst_) + Bytes(restColumn_) + Bytes(restValue_) +
          Bytes(pinned_) + Bytes(diagonal_) + Bytes(cleared_) + Bytes(constant_) + Bytes(blocks_) + Bytes(inverse_) +
-         Bytes(extra_.begin) + Bytes(extra_.end) + Bytes(extra_.column) + Bytes(extra_.block) + Bytes(extraOrder_);
+         Bytes(extra_.begin) + Bytes(extra_.end) + Bytes(extra_.column) + Bytes(extra_.block) + Bytes(extraFirst_) +
+         Bytes(extraOrder_);
 }
 
 }  // namespace percale::fabric

@@ -60,11 +60,11 @@ struct ScalarEntry {
 /// Entries at the same place add up, in the order in which they are given.
 ScalarMatrix MakeScalarMatrix(int rows, std::span<const ScalarEntry> entries);
 
-/// A block of E. Between two vertices it stands for itself and for its transpose at (column, row). Of two vertices a
-/// block is given once, or in parts that add up.
-struct ExtraBlock {
-  std::int32_t row = 0, column = 0;
-  std::array<Real, 9> block{};  ///< Column by column.
+/// A part of E: weight[i] weight[j] block between vertices i and j of up to four.
+struct ExtraTerm {
+  std::array<std::int32_t, 4> vertex{-1, -1, -1, -1};  ///< Different ones; -1: none.
+  std::array<Real, 4> weight{};
+  std::array<Real, 9> block{};  ///< Symmetric.
 };
 
 /// E in compressed rows with gaps between them. Its arrays grow and never shrink.
@@ -101,7 +101,7 @@ class SystemMatrix {
   /// Per block what S has there: who writes all blocks himself adds it to their diagonals, and needs no Reset.
   std::span<const Real> constant() const { return constant_; }
   /// Sets E. Allocates only when there is more of it than ever before. Leaving it out keeps E.
-  void SetExtra(std::span<const ExtraBlock> blocks, const Executor& executor);
+  void SetExtra(std::span<const ExtraTerm> terms, const Executor& executor);
   /// Ends the filling: clears what belongs to pinned vertices and inverts the diagonal.
   void Finish(const Executor& executor);
 
@@ -143,7 +143,7 @@ class SystemMatrix {
   std::vector<Real> constant_;          // per block: what S has there
   RealVector blocks_, inverse_;         // nine per block or row, and one more at the end
   ExtraRows extra_;
-  std::vector<std::int32_t> extraOrder_;
+  std::vector<std::int32_t> extraFirst_, extraOrder_;  // per row the terms that it is in, as 4 term + place
 };
 
 /// The rows that one chunk of a loop covers. Small enough that two threads share 2,000 vertices well, large enough that

@@ -81,6 +81,12 @@ constexpr EngineTable FabricTable() {
   table.readFolds = [](const void* e, int cloth, std::vector<Fold>& folds) {
     Self<FabricEngine>(e).ReadFolds(cloth, folds);
   };
+  table.readContact = [](const void* e, std::vector<Touch>& touches, std::vector<Vec3>& obstacles) {
+    Self<FabricEngine>(e).ReadContact(touches, obstacles);
+  };
+  table.writeContact = [](void* e, std::span<const Touch> touches, std::span<const Vec3> obstacles) {
+    Self<FabricEngine>(e).WriteContact(touches, obstacles);
+  };
   table.writeState = [](void* e, int cloth, const WorldState::Cloth& state, double time) {
     Self<FabricEngine>(e).WriteState(cloth, state.positions, state.previous, state.anchors, time);
     Self<FabricEngine>(e).WriteFolds(cloth, state.folds);

@@ -43,6 +43,15 @@ struct EngineTable {
   void (*readFolds)(const void*, int cloth, std::vector<Fold>& folds) = [](const void*, int, std::vector<Fold>& folds) {
     folds.clear();
   };
+  /// What touches, and where the vertices of colliders are: see WorldState.
+  void (*readContact)(const void*, std::vector<Touch>& touches, std::vector<Vec3>& obstacles) =
+      [](const void*, std::vector<Touch>& touches, std::vector<Vec3>& obstacles) {
+        touches.clear();
+        obstacles.clear();
+      };
+  /// The same, set; after the state of all cloths.
+  void (*writeContact)(void*, std::span<const Touch> touches,
+                       std::span<const Vec3> obstacles) = [](void*, std::span<const Touch>, std::span<const Vec3>) {};
   /// The state of one cloth at `time` [s], which may be that of another World with the same cloths.
   void (*writeState)(void*, int cloth, const WorldState::Cloth&, double time) = nullptr;
   Stretch (*greatestStretch)(const void*) = nullptr;

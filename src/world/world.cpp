@@ -363,6 +363,7 @@ void World::Save(WorldState& state) const {
     w.engine->readAnchors(w.engineState.get(), static_cast<int>(c), state.cloths[c].anchors);
     w.engine->readFolds(w.engineState.get(), static_cast<int>(c), state.cloths[c].folds);
   }
+  w.engine->readContact(w.engineState.get(), state.touches, state.obstacles);
   state.handles = w.handles;
   state.balls = w.balls;
   state.gusts = w.gusts;
@@ -387,6 +388,7 @@ void World::Restore(const WorldState& state) {
     w.engine->writeState(w.engineState.get(), static_cast<int>(c), state.cloths[c], state.report.time);
     ComputeVelocities(cloth.positions, cloth.previous, w.scene->TimeStep(), cloth.velocities);
   }
+  w.engine->writeContact(w.engineState.get(), state.touches, state.obstacles);
   w.engine->takeCounts(w.engineState.get());
   w.report = state.report;
   w.restFrames = state.restFrames;
@@ -402,6 +404,7 @@ std::size_t WorldState::Bytes() const {
     bytes += (cloth.positions.capacity() + cloth.previous.capacity() + cloth.anchors.capacity()) * sizeof(Vec3);
     bytes += cloth.folds.capacity() * sizeof(Fold);
   }
+  bytes += touches.capacity() * sizeof(Touch) + obstacles.capacity() * sizeof(Vec3);
   return bytes + handles.capacity() * sizeof(Handle) + balls.capacity() * sizeof(Ball) +
          gusts.capacity() * sizeof(Gust);
 }

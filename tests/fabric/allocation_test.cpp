@@ -18,7 +18,7 @@ using namespace percale::test;
 TEST_CASE("a solve does not allocate, not even the first; contacts do when there are more than ever before") {
   const Executor executor(1);
   const Sheet sheet = Square(50);
-  const std::vector<ExtraBlock> many = RemotePairs(sheet, 400, 1000), few = RemotePairs(sheet, 300, 500);
+  const std::vector<ExtraTerm> many = RemotePairs(sheet, 400, 1000), few = RemotePairs(sheet, 300, 500);
   SystemMatrix matrix;
   Multigrid multigrid;
   ConjugateGradient gradient;
@@ -27,7 +27,7 @@ TEST_CASE("a solve does not allocate, not even the first; contacts do when there
   gradient.SetUp(matrix.rows());
   const RealVector b = Weight(sheet);
   RealVector x(VectorLength(matrix.rows()), 0);
-  const auto solve = [&](std::span<const ExtraBlock> contacts) {
+  const auto solve = [&](std::span<const ExtraTerm> contacts) {
     matrix.Reset(executor);
     matrix.SetExtra(contacts, executor);
     matrix.Finish(executor);

@@ -52,7 +52,7 @@ Dense ToEigen(const Prolongation& p) {
 }
 
 /// What the matrix of a sheet has to be, from its parts.
-Dense Expected(const Sheet& sheet, const Cloth& cloth, std::span<const ExtraBlock> extra) {
+Dense Expected(const Sheet& sheet, const Cloth& cloth, std::span<const ExtraTerm> extra) {
   SystemMatrix membrane;
   ScalarMatrix nothing;
   nothing.first.assign(sheet.rest.size() + 1, 0);
@@ -74,12 +74,15 @@ Dense Expected(const Sheet& sheet, const Cloth& cloth, std::span<const ExtraBloc
       for (int r = 0; r < 3; ++r) dense(3 * row + r, 3 * constant.column[k] + r) += constant.value[k];
     }
   }
-  for (const ExtraBlock& e : extra) {
-    add(e.row, e.column, e.block.data());
-    if (e.row == e.column) continue;
-    Real transposed[9];
-    for (int k = 0; k < 9; ++k) transposed[k] = e.block[k % 3 * 3 + k / 3];
-    add(e.column, e.row, transposed);
+  for (const ExtraTerm& e : extra) {
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        if (e.vertex[i] < 0 || e.vertex[j] < 0) continue;
+        Real block[9];
+        for (int k = 0; k < 9; ++k) block[k] = e.weight[i] * e.weight[j] * e.block[k];
+        add(e.vertex[i], e.vertex[j], block);
+      }
+    }
   }
   for (int k = 0; k < n; ++k) {
     if (!sheet.pinned[k / 3]) continue;
@@ -96,7 +99,7 @@ struct Solver : System {
   ConjugateGradient gradient;
   Sheet sheet;
 
-  Solver(const Sheet& of, bool material, const Cloth& cloth = {}, std::span<const ExtraBlock> extra = {},
+  Solver(const Sheet& of, bool material, const Cloth& cloth = {}, std::span<const ExtraTerm> extra = {},
          const Executor& executor = Serial())
       : System(of, executor, cloth, extra), sheet(of) {
     multigrid.SetUp(matrix, MakeHierarchy(matrix.pattern(), material ? of.Mesh() : of.NoMaterial(), of.pinned));
@@ -158,7 +161,7 @@ TEST_CASE("the product is that of the dense matrix, and symmetric") {
   for (const bool contacts : {false, true}) {
     const Sheet sheet = Square(9);
     const Cloth cloth{.bending = 1e-2};
-    std::vector<ExtraBlock> extra;
+    std::vector<ExtraTerm> extra;
     if (contacts) extra = RemotePairs(sheet, 60, 1000);  // some of the same pair, some at pins
     const System system(sheet, Serial(), cloth, extra);
     const int n = sheet.vertices();
@@ -190,7 +193,7 @@ TEST_CASE("extra blocks can change from one filling to the next") {
   const Sheet sheet = Square(9);
   System system(sheet, Serial());
   for (const int pairs : {10, 200, 0, 30}) {
-    const std::vector<ExtraBlock> extra = RemotePairs(sheet, pairs, 1000);
+    const std::vector<ExtraTerm> extra = RemotePairs(sheet, pairs, 1000);
     system.Fill(sheet, Serial(), {}, extra);
     const Dense dense = Expected(sheet, {}, extra);
     CHECK((ToEigen(system.matrix) - dense).norm() < 1e-6 * dense.norm());
@@ -399,7 +402,7 @@ TEST_CASE("iterations depend little on the size of the mesh, on its shape and on
 
 TEST_CASE("contacts between remote vertices have to be in the coarse levels") {
   const Sheet sheet = Square(128);
-  const std::vector<ExtraBlock> extra = RemotePairs(sheet, 2048, 1000);
+  const std::vector<ExtraTerm> extra = RemotePairs(sheet, 2048, 1000);
   for (const bool material : {true, false}) {
     Solver solver(sheet, material, {}, extra);
     const RealVector b = Weight(sheet);
@@ -415,7 +418,7 @@ TEST_CASE("contacts between remote vertices have to be in the coarse levels") {
 
 TEST_CASE("the same bits for any number of threads") {
   const Sheet sheet = TwoPanels(70);
-  const std::vector<ExtraBlock> extra = RemotePairs(sheet, 500, 1000);
+  const std::vector<ExtraTerm> extra = RemotePairs(sheet, 500, 1000);
   for (const bool material : {true, false}) {
     RealVector first;
     for (const int threads : {1, 2, 3, 8}) {
@@ -435,8 +438,9 @@ TEST_CASE("negative curvature ends the solve with a direction of descent") {
   for (const Real push : {Real{100}, Real{3000}, Real{1e6}}) {
     CAPTURE(push);
     // Springs of negative stiffness on every vertex of a patch.
-    std::vector<ExtraBlock> extra;
-    for (int v = 150; v < 250; ++v) extra.push_back({v, v, {-push, 0, 0, 0, -push, 0, 0, 0, -push}});
+    std::vector<ExtraTerm> extra;
+    for (int v = 150; v < 250; ++v)
+      extra.push_back({{v, -1, -1, -1}, {1, 0, 0, 0}, {-push, 0, 0, 0, -push, 0, 0, 0, -push}});
     Solver solver(sheet, true, {}, extra);
     const RealVector b = RandomVector(n, 8, sheet.pinned);
     SolveResult result;

@@ -193,12 +193,12 @@ struct System {
   fabric::SystemMatrix matrix;
 
   explicit System(const Sheet& sheet, const Executor& executor, const Cloth& cloth = {},
-                  std::span<const fabric::ExtraBlock> extra = {}) {
+                  std::span<const fabric::ExtraTerm> extra = {}) {
     matrix.SetUp(fabric::MakePattern(sheet.vertices(), sheet.triangles), ConstantPart(sheet, cloth), sheet.pinned);
     Fill(sheet, executor, cloth, extra);
   }
   void Fill(const Sheet& sheet, const Executor& executor, const Cloth& cloth,
-            std::span<const fabric::ExtraBlock> extra) {
+            std::span<const fabric::ExtraTerm> extra) {
     matrix.Reset(executor);
     AddMembrane(sheet, cloth, matrix);
     matrix.SetExtra(extra, executor);
@@ -227,10 +227,10 @@ inline fabric::RealVector Weight(const Sheet& sheet, const Cloth& cloth = {}) {
   return b;
 }
 
-/// Springs of that stiffness [N/m] between remote vertices, along directions that differ; each four blocks.
-inline std::vector<fabric::ExtraBlock> RemotePairs(const Sheet& sheet, int pairs, double stiffness) {
+/// Springs of that stiffness [N/m] between remote vertices, along directions that differ.
+inline std::vector<fabric::ExtraTerm> RemotePairs(const Sheet& sheet, int pairs, double stiffness) {
   SplitMix64 random(99);
-  std::vector<fabric::ExtraBlock> blocks;
+  std::vector<fabric::ExtraTerm> terms;
   for (int k = 0; k < pairs; ++k) {
     // Folded along a line askew: the vertex that lies over another is far away in the mesh.
     const auto a = static_cast<std::int32_t>(random.Next() % sheet.vertices());
@@ -238,16 +238,12 @@ inline std::vector<fabric::ExtraBlock> RemotePairs(const Sheet& sheet, int pairs
     if (a == b) continue;
     double n[3], length = 0;
     for (double& c : n) c = 2 * random.NextUnit() - 1, length += c * c;
-    std::array<fabric::Real, 9> block, minus;
-    for (int c = 0; c < 9; ++c) {
-      block[c] = static_cast<fabric::Real>(stiffness * n[c / 3] * n[c % 3] / length);
-      minus[c] = -block[c];
-    }
-    blocks.push_back({a, a, block});
-    blocks.push_back({b, b, block});
-    blocks.push_back({a, b, minus});
+    fabric::ExtraTerm& term = terms.emplace_back();
+    term.vertex = {a, b, -1, -1};
+    term.weight = {1, -1, 0, 0};
+    for (int c = 0; c < 9; ++c) term.block[c] = static_cast<fabric::Real>(stiffness * n[c / 3] * n[c % 3] / length);
   }
-  return blocks;
+  return terms;
 }
 
 }  // namespace percale::test

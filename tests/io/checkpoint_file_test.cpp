@@ -35,7 +35,8 @@ Scene FullScene() {
   scene.cloths[1].pinned.clear();
   scene.spheres.push_back({{0.5, 0.2, 0.5}, 0.2, 0.3});
   scene.planes.push_back({{0, -0.5, 0}, {0, 1, 0}, 0.5});
-  scene.pinMotions.push_back({.cloth = 0, .points = {{6, 0}}, .start = 0.1, .end = 0.4, .displacement = {-0.2, 0.1, 0}});
+  scene.pinMotions.push_back(
+      {.cloth = 0, .points = {{6, 0}}, .start = 0.1, .end = 0.4, .displacement = {-0.2, 0.1, 0}});
   scene.wind = {{1, 0, 2}, 0.5, 0.3, 0.8};
   REQUIRE_FALSE(HasErrors(CheckScene(scene)));
   return scene;
