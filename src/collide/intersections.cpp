@@ -327,9 +327,14 @@ struct IntersectionJudge::Impl {
       if (node.endLeaf - node.firstLeaf > 1) continue;
       for (std::size_t e = 0; e < count; ++e) {
         if (!edges[e].bounds.Meets(node.bounds)) continue;
+        std::array<std::size_t, kLeafTriangles> near;  // gathered first: a branch on each would be mispredicted
+        std::size_t nearCount = 0;
         for (std::size_t i = LeafBegin(node.firstLeaf); i < LeafBegin(node.endLeaf); ++i) {
-          if (!edges[e].bounds.Meets(placedBounds[i])) continue;
-          const std::int32_t t = placed[i].triangle;
+          near[nearCount] = i;
+          nearCount += edges[e].bounds.Meets(placedBounds[i]) ? 1 : 0;
+        }
+        for (std::size_t k = 0; k < nearCount; ++k) {
+          const std::int32_t t = placed[near[k]].triangle;
           if (Meet(edges[e], corners[Z(t)])) out.Add({{edges[e].a, edges[e].b}, t}, most);
         }
       }

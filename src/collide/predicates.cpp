@@ -10,6 +10,9 @@ namespace percale {
 namespace {
 
 // Every operation below must round to double once, to nearest; the build has -ffp-contract=off.
+#ifdef __FAST_MATH__
+#error "expansions are wrong with -ffast-math; compile this file without it"
+#endif
 static_assert(FLT_EVAL_METHOD == 0, "expansions need arithmetic in double precision alone");
 
 constexpr double kHalfUlp = 0x1p-53;  // the greatest relative error u of a rounded result
