@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "math/pose.h"
+
 namespace percale::bench {
 namespace {
 
@@ -131,7 +133,9 @@ void PlainTwin::MovePins() {
   const double time = time_;
   for (PointMass& point : points_) {
     if (!point.pinned) continue;
-    Vec3 offset, turned = point.start;
+    Vec3 offset;
+    Pose turned;
+    bool turns = false;
     for (const PinMotion& motion : scene_.pinMotions) {
       if (motion.cloth != point.cloth) continue;
       bool concerned = motion.points.empty();
@@ -140,15 +144,13 @@ void PlainTwin::MovePins() {
       const double s = std::clamp((time - motion.start) / (motion.end - motion.start), 0.0, 1.0);
       const double share = motion.steady ? s : s * s * (3 - 2 * s);
       offset += motion.displacement * share;
-      // Rodrigues' formula.
-      const Vec3 axis = UnitOr(motion.axis, {0, 1, 0}), arm = turned - motion.centre;
-      const double angle = motion.angle * share * (std::numbers::pi / 180);
-      if (angle != 0)
-        turned = motion.centre + arm * std::cos(angle) + Cross(axis, arm) * std::sin(angle) +
-                 axis * (Dot(axis, arm) * (1 - std::cos(angle)));
+      if (motion.angle == 0 || share == 0) continue;
+      const Matrix3<double> turn = RotationAbout(UnitOr(motion.axis, {0, 1, 0}), motion.angle * share);
+      turned = {Product(turn, turned.rotation), motion.centre + Times(turn, turned.position - motion.centre)};
+      turns = true;
     }
     point.previous = point.position;
-    point.position = turned + offset;
+    point.position = (turns ? ToWorld(turned, point.start) : point.start) + offset;
   }
 }
 

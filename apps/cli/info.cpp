@@ -121,6 +121,7 @@ void PrintScene(const Options& options, const Session& session) {
   std::printf("colliders          %zu spheres, %zu planes, %zu of other shapes\n", scene.spheres.size(),
               scene.planes.size(), scene.colliders.size());
   std::printf("pin motions        %zu\n", scene.pinMotions.size());
+  if (!scene.colliderMotions.empty()) std::printf("collider motions   %zu\n", scene.colliderMotions.size());
   std::printf(
       "wind               %s\n",
       (fabric ? scene.wind.airDensity > 0 && scene.wind.velocity != Vec3{} : scene.wind.drag > 0) ? "yes" : "no");

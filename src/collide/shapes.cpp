@@ -11,6 +11,9 @@ namespace {
 // The distances are those of Inigo Quilez, "Distance functions" (iquilezles.org/articles/distfunctions), with the
 // normals worked out beside them, and his cone and cylinder cut down to a profile in a plane through the axis.
 
+/// Below this a length is so rough that it has no direction [m].
+constexpr double kNoDirection = 1e-100;
+
 /// A point in the plane through the axis of a solid of revolution: its distance from the axis, and its height.
 struct Profile {
   double w = 0, y = 0;
@@ -32,7 +35,7 @@ struct ProfileSample {
 ProfileSample FromCorner(const Profile& point, const Profile& corner, const Profile& fallback) {
   const Profile d = point - corner;
   const double distance = std::hypot(d.w, d.y);
-  return {distance, distance > 0 ? Profile{d.w / distance, d.y / distance} : fallback};
+  return {distance, distance > kNoDirection ? Profile{d.w / distance, d.y / distance} : fallback};
 }
 
 /// Cut out of the half plane by |y| <= halfLength and w <= radius.
@@ -71,13 +74,13 @@ ProfileSample ToTorus(const Solid& solid, const Profile& p) {
 SolidSample Revolved(const Solid& solid, const Vec3& point, ProfileSample (*distance)(const Solid&, const Profile&)) {
   const double w = std::hypot(point.x, point.z);
   const ProfileSample sample = distance(solid, {w, point.y});
-  const Vec3 out = w > 0 ? Vec3{point.x / w, 0, point.z / w} : Vec3{1, 0, 0};
+  const Vec3 out = w > kNoDirection ? Vec3{point.x / w, 0, point.z / w} : Vec3{1, 0, 0};
   return {sample.distance, out * sample.normal.w + Vec3{0, sample.normal.y, 0}};
 }
 
 SolidSample ToBall(const Vec3& fromCentre, double radius, const Vec3& fallback) {
   const double length = Length(fromCentre);
-  return {length - radius, length > 0 ? fromCentre / length : fallback};
+  return {length - radius, length > kNoDirection ? fromCentre / length : fallback};
 }
 
 SolidSample ToBox(const Vec3& half, const Vec3& p) {
@@ -85,7 +88,7 @@ SolidSample ToBox(const Vec3& half, const Vec3& p) {
   const Vec3 side{sign(p.x), sign(p.y), sign(p.z)};
   const Vec3 beyond{std::abs(p.x) - half.x, std::abs(p.y) - half.y, std::abs(p.z) - half.z};
   const Vec3 out{std::max(beyond.x, 0.0), std::max(beyond.y, 0.0), std::max(beyond.z, 0.0)};
-  if (const double distance = Length(out); distance > 0) {
+  if (const double distance = Length(out); distance > kNoDirection) {
     return {distance, Vec3{side.x * out.x, side.y * out.y, side.z * out.z} / distance};
   }
   if (beyond.x >= beyond.y && beyond.x >= beyond.z) return {beyond.x, {side.x, 0, 0}};

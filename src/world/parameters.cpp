@@ -502,11 +502,11 @@ std::vector<Parameter> MakeTable() {
     Turn<&M::angle>({.name = "angle", .label = "Angle", .unit = "degree", .min = -kMostDegrees,
       .max = kMostDegrees, .typicalMin = -720, .typicalMax = 720,
       .help = "By which it is turned in all, counter-clockwise seen from the axis' tip; 720 is two turns."}),
-    Turn<&M::ownCentre>({.name = "own_centre", .label = "Own centre",
-      .help = "The axis runs through the collider's position; false as soon as `centre` is stated."}),
     WithChoice(Turn<&M::centre>({.name = "centre", .label = "Centre", .unit = "m", .min = -kFarthest,
       .max = kFarthest, .typicalMin = -2, .typicalMax = 2, .help = "A point of the axis; displacements carry it along."}),
       &ChooseCentre),
+    Turn<&M::ownCentre>({.name = "own_centre", .label = "Own centre",
+      .help = "The axis runs through the collider's position; false as soon as `centre` is stated."}),
     Turn<&M::steady>({.name = "steady", .label = "Steady",
       .help = "At constant speed from start to end, not smoothly from rest to rest."}),
 

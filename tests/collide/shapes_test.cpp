@@ -207,6 +207,23 @@ TEST_CASE("the normal is the gradient, and the distance grows no faster than the
   }
 }
 
+TEST_CASE("the normal has length 1 in centres, on axes and in corners, and ever so near to them") {
+  for (const auto& [name, solid] : Solids()) {
+    CAPTURE(name);
+    const double h = solid.halfLength, r = solid.radius;
+    for (const Vec3& at : {Vec3{}, Vec3{0, h, 0}, Vec3{0, -h, 0}, Vec3{0, 0.1, 0}, Vec3{r, h, 0}, Vec3{0, -h, r},
+                           Vec3{0, 0, r}, solid.half, -solid.half}) {
+      for (const double off : {0.0, 5e-324, 1e-310, 1e-160, 1e-90, 1e-30, 1e-17, 1e-9}) {
+        for (const Vec3& way : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{1, 1, 1}, Vec3{-1, 1, -1}}) {
+          const SolidSample sample = DistanceTo(solid, at + way * off);
+          CHECK(std::abs(Length(sample.normal) - 1) < 1e-14);
+          CHECK(std::abs(sample.distance - DistanceTo(solid, at).distance) <= 2 * off + 1e-15);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("corners, edges and faces of a box") {
   const Solid box = Make(ColliderShape::Box, 1, 1);  // half 0.3, 0.15, 0.5
   const double third = 1 / std::sqrt(3.0);

@@ -128,6 +128,12 @@ TEST_CASE("wind, pins that move, and the ends of damping equal the plain twin") 
   moving.pinMotions.push_back({0, {{0, 0}, {19, 19}}, 0.2, 0.9, {-0.3, 0, 0.2}});
   moving.wind = {{0, 3, 0}, 0.5, 1, 0.3};
   CHECK(RunBoth(moving, 120) == "");
+  moving.pinMotions[0].angle = 500;
+  moving.pinMotions[0].axis = {1, 2, 0};
+  moving.pinMotions[0].centre = {0.5, 1, 0.5};
+  moving.pinMotions[1].angle = -90;
+  moving.pinMotions[1].steady = true;
+  CHECK(RunBoth(moving, 120) == "");
 
   for (const double damping : {0.0, 100.0}) {
     CAPTURE(damping);

@@ -25,6 +25,7 @@ Scene CurtainScene() {
   scene.spheres.push_back({{0.5, 0.6, 0.5}, 0.2, 0.3});
   scene.planes.push_back({{0, 0.2, 0}, {0, 1, 0.1}, 0.5});
   scene.pinMotions.push_back({0, {{13, 0}}, 0.1, 0.4, {-0.2, 0.1, 0}});
+  scene.pinMotions.push_back({0, {}, 0, 0.6, {}, {0, 1, 0}, 30, {0.5, 1, 0}});
   scene.wind = {{1, 0, 2}, 0.5, 0.3, 0.8};
   return scene;
 }
