@@ -184,7 +184,7 @@ void Builder::FindNeighbours() {
 void Builder::FindLeafNeighbours() {
   std::vector<std::vector<std::int32_t>> leavesOf(Index(mesh_.vertices()));
   std::vector<std::array<Vec3, 2>> boxes;  // of places
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec3 low = {kInfinity, kInfinity, kInfinity}, high = -low;
     for (const std::int32_t v : clusters_.Vertices(leaf)) {
@@ -195,8 +195,8 @@ void Builder::FindLeafNeighbours() {
     }
     boxes.push_back({low, high});
   }
-  std::vector<std::vector<std::int32_t>> sharing(Index(clusters_.leaves()));
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+  std::vector<std::vector<std::int32_t>> sharing(Index(clusters_.clothLeaves));
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
     auto& all = sharing[Index(leaf)];
     for (const std::int32_t v : clusters_.Vertices(leaf)) {
       all.insert(all.end(), leavesOf[Index(v)].begin(), leavesOf[Index(v)].end());
@@ -204,7 +204,7 @@ void Builder::FindLeafNeighbours() {
     Unite(all);
   }
   leafNeighbours_ = sharing;
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
     const auto isClose = [&, a = boxes[Index(leaf)]](std::int32_t other) {
       const auto& b = boxes[Index(other)];
       const Vec3 gap = {std::max(a[0].x - b[1].x, b[0].x - a[1].x), std::max(a[0].y - b[1].y, b[0].y - a[1].y),
@@ -317,10 +317,10 @@ void Builder::AddAround(std::int32_t leaf) {
 
 FlatRegions Builder::Make() {
   FindNeighbours();
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) ShapeLeaf(leaf);
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) ShapeLeaf(leaf);
   FindLeafNeighbours();
   regions_.first = regions_.regionFirst = regions_.aroundFirst = {0};
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
     for (const std::int32_t other : leafNeighbours_[Index(leaf)]) {
       if (other >= leaf) AddRegion(leaf, other);
     }
@@ -362,6 +362,7 @@ bool FlatRegions::AreAllApart(std::int32_t leaf, std::span<const LeafShape> shap
 }
 
 bool FlatRegions::AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, std::span<const LeafShape> shapes,
+                           std::span<const TriangleShapes> triangleShapes, const Kernels& kernels,
                            float distance) const {
   float x[3], y[3];  // of G
   for (int i = 0; i < 3; ++i) {
@@ -372,12 +373,14 @@ bool FlatRegions::AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, st
   const float norm = std::sqrt((xx + yy) / 2 + std::sqrt((xx - yy) * (xx - yy) / 4 + xy * xy));
   const float least = distance * norm / altitude[Index(pair)] * 1.0001f;
   for (std::int32_t i = regionFirst[Index(pair)]; i < regionFirst[Index(pair) + 1]; ++i) {
-    const LeafShape& f = shapes[Index(region[Index(i)])];
+    const std::int32_t leaf = region[Index(i)];
+    const LeafShape& f = shapes[Index(leaf)];
     const float fxx = Dot(x, f.x), fyy = Dot(y, f.y), fxy = (Dot(x, f.y) + Dot(y, f.x)) / 2;
     // m = (fxx + fyy) / 2 - root(square) - norm * deviation > least
     const float root = (fxx + fyy) / 2 - norm * f.deviation - least;
     const float square = (fxx - fyy) * (fxx - fyy) / 4 + fxy * fxy;
-    if (!(root > 0 && root * root > square)) return false;
+    if (root > 0 && root * root > square) continue;
+    if (!kernels.areMonotone(triangleShapes[Index(leaf)], x, y, least + norm * f.error)) return false;
   }
   return true;
 }

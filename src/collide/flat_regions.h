@@ -45,6 +45,7 @@ struct FlatRegions {
   /// Whether no two items of the pair's leaves a and b without a vertex in common come within that distance. `shapes`:
   /// per leaf.
   bool AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, std::span<const collide::LeafShape> shapes,
+                std::span<const collide::TriangleShapes> triangleShapes, const collide::Kernels& kernels,
                 float distance) const;
   std::size_t MemoryBytes() const;
 };

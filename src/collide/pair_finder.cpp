@@ -143,8 +143,9 @@ struct PairFinder::Impl {
   AlignedVector<BoxRow> rows;                   // per vertex
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
-  std::vector<LeafShape> shapes;          // per leaf
-  std::vector<std::uint8_t> areAllApart;  // per leaf, as FlatRegions has it
+  std::vector<LeafShape> shapes;                 // per leaf
+  AlignedVector<TriangleShapes> triangleShapes;  // per leaf
+  std::vector<std::uint8_t> areAllApart;         // per leaf, as FlatRegions has it
   AlignedVector<BoxBlock> itemBoxes;
   std::vector<std::uint8_t> isTouched;  // per leaf: may have pairs
   ChunkLists<LeafPair> leafPairs;
@@ -163,6 +164,7 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       chunks((leafBlocks + chunkBlocks - 1) / chunkBlocks),
       rows(m.body.size()),
       shapes(Index(clusters.clothLeaves)),
+      triangleShapes(Index(clusters.clothLeaves)),
       areAllApart(Index(clusters.clothLeaves)),
       isTouched(Index(clusters.leaves())),
       leafPairs(chunks),
@@ -233,7 +235,8 @@ void PairFinder::Impl::ShapeLeaves(std::span<const double> reach) {
                         .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
                         .greatestSlope = regions.greatestSlope.data(),
                         .rows = rows.data(),
-                        .shapes = shapes.data()});
+                        .shapes = shapes.data(),
+                        .triangleShapes = triangleShapes.data()});
   });
   ForBlocks([&](int begin, int end, int) {
     for (int leaf = begin * kLanes; leaf < std::min(end * kLanes, clusters.clothLeaves); ++leaf) {
@@ -243,14 +246,14 @@ void PairFinder::Impl::ShapeLeaves(std::span<const double> reach) {
 }
 
 void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPairs) {
-  const bool areShaped = clothPairs;
   leafPairs.Clear();
   ForBlocks([&](int begin, int end, int chunk) {
     const auto put = [&](const LeafPair* pairs, int count) {
       for (int i = 0; i < count; ++i) {
         const auto [a, b] = pairs[i];
-        const std::int32_t pair = areShaped ? regions.Find(a, b) : -1;
-        if (pair >= 0 && (areAllApart[Index(a)] != 0 || regions.AreApart(pair, a, b, shapes, Distance(reach, a)))) {
+        const std::int32_t pair = regions.Find(a, b);
+        if (pair >= 0 && (areAllApart[Index(a)] != 0 ||
+                          regions.AreApart(pair, a, b, shapes, triangleShapes, kernels, Distance(reach, a)))) {
           continue;
         }
         leafPairs.Room(chunk)[0] = pairs[i];
@@ -375,10 +378,10 @@ std::span<const VertexQuad> PairFinder::edgeEdge() const {
 std::size_t PairFinder::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   const Impl& s = *impl_;
-  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.areAllApart) +
-                    bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.isTouched) +
-                    s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() + s.edgeEdgeLists.MemoryBytes() +
-                    s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
+  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.triangleShapes) +
+                    bytes(s.areAllApart) + bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) +
+                    bytes(s.isTouched) + s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() +
+                    s.edgeEdgeLists.MemoryBytes() + s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
   for (const auto& level : s.levels) sum += bytes(level);
   return sum;
 }
