@@ -31,6 +31,12 @@ double Size(const Vec2& a) {
   return std::sqrt(a.x * a.x + a.y * a.y);
 }
 
+/// Sorts them, each once.
+void Unite(std::vector<std::int32_t>& all) {
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+}
+
 using Polygon = std::vector<Vec2>;
 
 double Area(const Polygon& p) {
@@ -122,6 +128,7 @@ class Builder {
   void FindLeafNeighbours();
   void ShapeLeaf(std::int32_t leaf);
   void AddRegion(std::int32_t a, std::int32_t b);
+  void AddAround(std::int32_t leaf);
 
   const ContactMesh& mesh_;
   const Clusters& clusters_;
@@ -173,22 +180,44 @@ void Builder::FindNeighbours() {
   }
 }
 
+/// Leaves that share a vertex, and those nearly as close: it takes leaves' altitudes.
 void Builder::FindLeafNeighbours() {
   std::vector<std::vector<std::int32_t>> leavesOf(Index(mesh_.vertices()));
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
-    for (const std::int32_t v : clusters_.Vertices(leaf)) leavesOf[Index(v)].push_back(leaf);
+  std::vector<std::array<Vec3, 2>> boxes;  // of places
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Vec3 low = {kInfinity, kInfinity, kInfinity}, high = -low;
+    for (const std::int32_t v : clusters_.Vertices(leaf)) {
+      leavesOf[Index(v)].push_back(leaf);
+      const Vec3& p = mesh_.place[Index(v)];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    boxes.push_back({low, high});
   }
-  const auto unite = [](std::vector<std::int32_t>& all) {
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-  };
-  leafNeighbours_.resize(Index(clusters_.leaves()));
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
-    auto& all = leafNeighbours_[Index(leaf)];
+  std::vector<std::vector<std::int32_t>> sharing(Index(clusters_.clothLeaves));
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
+    auto& all = sharing[Index(leaf)];
     for (const std::int32_t v : clusters_.Vertices(leaf)) {
       all.insert(all.end(), leavesOf[Index(v)].begin(), leavesOf[Index(v)].end());
     }
-    unite(all);
+    Unite(all);
+  }
+  leafNeighbours_ = sharing;
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
+    const auto isClose = [&, a = boxes[Index(leaf)]](std::int32_t other) {
+      const auto& b = boxes[Index(other)];
+      const Vec3 gap = {std::max(a[0].x - b[1].x, b[0].x - a[1].x), std::max(a[0].y - b[1].y, b[0].y - a[1].y),
+                        std::max(a[0].z - b[1].z, b[0].z - a[1].z)};
+      return std::max({gap.x, gap.y, gap.z}) <= altitude_[Index(leaf)];
+    };
+    auto& all = leafNeighbours_[Index(leaf)];
+    for (const std::int32_t near : sharing[Index(leaf)]) {
+      for (const std::int32_t next : sharing[Index(near)]) {
+        if (next > leaf && isClose(next)) all.push_back(next);
+      }
+    }
+    Unite(all);
   }
 }
 
@@ -266,24 +295,36 @@ void Builder::AddRegion(std::int32_t a, std::int32_t b) {
   // It is covered once, and by what hangs together with both.
   const std::size_t triangles = clusters_.Triangles(a).size() + (a == b ? 0 : clusters_.Triangles(b).size());
   if (inLeaves != triangles || !(std::abs(covered - area) <= kAreaError * area)) return;
-  std::sort(leaves_.begin(), leaves_.end());
-  leaves_.erase(std::unique(leaves_.begin(), leaves_.end()), leaves_.end());
+  Unite(leaves_);
   regions_.other.push_back(b);
   regions_.altitude.push_back(static_cast<float>(altitude * (1 - 1e-6)));
   regions_.region.insert(regions_.region.end(), leaves_.begin(), leaves_.end());
   regions_.regionFirst.push_back(static_cast<std::int32_t>(regions_.region.size()));
 }
 
+/// What the pairs of a leaf have in all.
+void Builder::AddAround(std::int32_t leaf) {
+  float altitude = std::numeric_limits<float>::infinity();
+  const auto pair = Index(regions_.first[Index(leaf)]);
+  for (std::size_t k = pair; k < regions_.altitude.size(); ++k) altitude = std::min(altitude, regions_.altitude[k]);
+  leaves_.assign(regions_.region.begin() + regions_.regionFirst[pair], regions_.region.end());
+  Unite(leaves_);
+  regions_.first.push_back(static_cast<std::int32_t>(regions_.other.size()));
+  regions_.around.insert(regions_.around.end(), leaves_.begin(), leaves_.end());
+  regions_.aroundFirst.push_back(static_cast<std::int32_t>(regions_.around.size()));
+  regions_.aroundAltitude.push_back(altitude);
+}
+
 FlatRegions Builder::Make() {
   FindNeighbours();
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) ShapeLeaf(leaf);
   FindLeafNeighbours();
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) ShapeLeaf(leaf);
-  regions_.first = regions_.regionFirst = {0};
-  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+  regions_.first = regions_.regionFirst = regions_.aroundFirst = {0};
+  for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
     for (const std::int32_t other : leafNeighbours_[Index(leaf)]) {
       if (other >= leaf) AddRegion(leaf, other);
     }
-    regions_.first.push_back(static_cast<std::int32_t>(regions_.other.size()));
+    AddAround(leaf);
   }
   return std::move(regions_);
 }
@@ -294,11 +335,35 @@ float Dot(const float* a, const float* b) {
 
 }  // namespace
 
-bool FlatRegions::AreApart(std::int32_t a, std::int32_t b, std::span<const LeafShape> shapes, float distance) const {
-  const auto begin = other.begin() + first[Index(a)], end = other.begin() + first[Index(a) + 1];
-  const auto found = std::lower_bound(begin, end, b);
-  if (found == end || *found != b) return false;
-  const auto pair = Index(found - other.begin());
+std::int32_t FlatRegions::Find(std::int32_t a, std::int32_t b) const {
+  for (std::int32_t pair = first[Index(a)]; pair < first[Index(a) + 1]; ++pair) {
+    if (other[Index(pair)] == b) return pair;
+  }
+  return -1;
+}
+
+// With G = F of the leaf itself, and differences from it by their norms.
+bool FlatRegions::AreAllApart(std::int32_t leaf, std::span<const LeafShape> shapes, float distance) const {
+  const LeafShape& g = shapes[Index(leaf)];
+  float most = 0;
+  for (std::int32_t i = aroundFirst[Index(leaf)]; i < aroundFirst[Index(leaf) + 1]; ++i) {
+    const LeafShape& f = shapes[Index(around[Index(i)])];
+    float square = 0;
+    for (int k = 0; k < 3; ++k) {
+      square += (f.x[k] - g.x[k]) * (f.x[k] - g.x[k]) + (f.y[k] - g.y[k]) * (f.y[k] - g.y[k]);
+    }
+    const float deviation = std::sqrt(square) + f.deviation;
+    if (!(deviation <= most)) most = deviation;  // also if it is not a number
+  }
+  const float xx = Dot(g.x, g.x), yy = Dot(g.y, g.y), xy = Dot(g.x, g.y);
+  const float middle = (xx + yy) / 2, half = std::sqrt((xx - yy) * (xx - yy) / 4 + xy * xy);
+  const float norm = std::sqrt(middle + half);
+  return middle - half - norm * most > distance * norm / aroundAltitude[Index(leaf)] * 1.0001f;
+}
+
+bool FlatRegions::AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, std::span<const LeafShape> shapes,
+                           std::span<const TriangleShapes> triangleShapes, const Kernels& kernels,
+                           float distance) const {
   float x[3], y[3];  // of G
   for (int i = 0; i < 3; ++i) {
     x[i] = (shapes[Index(a)].x[i] + shapes[Index(b)].x[i]) / 2;
@@ -306,14 +371,16 @@ bool FlatRegions::AreApart(std::int32_t a, std::int32_t b, std::span<const LeafS
   }
   const float xx = Dot(x, x), yy = Dot(y, y), xy = Dot(x, y);
   const float norm = std::sqrt((xx + yy) / 2 + std::sqrt((xx - yy) * (xx - yy) / 4 + xy * xy));
-  const float least = distance * norm / altitude[pair] * 1.0001f;
-  for (std::int32_t i = regionFirst[pair]; i < regionFirst[pair + 1]; ++i) {
-    const LeafShape& f = shapes[Index(region[Index(i)])];
+  const float least = distance * norm / altitude[Index(pair)] * 1.0001f;
+  for (std::int32_t i = regionFirst[Index(pair)]; i < regionFirst[Index(pair) + 1]; ++i) {
+    const std::int32_t leaf = region[Index(i)];
+    const LeafShape& f = shapes[Index(leaf)];
     const float fxx = Dot(x, f.x), fyy = Dot(y, f.y), fxy = (Dot(x, f.y) + Dot(y, f.x)) / 2;
     // m = (fxx + fyy) / 2 - root(square) - norm * deviation > least
     const float root = (fxx + fyy) / 2 - norm * f.deviation - least;
     const float square = (fxx - fyy) * (fxx - fyy) / 4 + fxy * fxy;
-    if (!(root > 0 && root * root > square)) return false;
+    if (root > 0 && root * root > square) continue;
+    if (!kernels.areMonotone(triangleShapes[Index(leaf)], x, y, least + norm * f.error)) return false;
   }
   return true;
 }
@@ -321,7 +388,7 @@ bool FlatRegions::AreApart(std::int32_t a, std::int32_t b, std::span<const LeafS
 std::size_t FlatRegions::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   return bytes(inverse) + bytes(greatestSlope) + bytes(first) + bytes(other) + bytes(altitude) + bytes(regionFirst) +
-         bytes(region);
+         bytes(region) + bytes(aroundFirst) + bytes(around) + bytes(aroundAltitude);
 }
 
 FlatRegions MakeFlatRegions(const ContactMesh& mesh, const Clusters& clusters) {

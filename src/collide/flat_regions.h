@@ -33,9 +33,20 @@ struct FlatRegions {
   std::vector<float> altitude;            ///< Per pair: h [m].
   std::vector<std::int32_t> regionFirst;  ///< Pair k has the leaves at [regionFirst[k], regionFirst[k + 1]) of ...
   std::vector<std::int32_t> region;       ///< ... these.
+  std::vector<std::int32_t> aroundFirst;  ///< Leaf l has the leaves at [aroundFirst[l], aroundFirst[l + 1]) of ...
+  std::vector<std::int32_t> around;       ///< ... these in the regions of its pairs.
+  std::vector<float> aroundAltitude;      ///< Per leaf: the least of its pairs [m].
 
-  /// Whether no two items of these leaves without a vertex in common come within that distance. `shapes`: per leaf.
-  bool AreApart(std::int32_t a, std::int32_t b, std::span<const collide::LeafShape> shapes, float distance) const;
+  /// Whether `AreApart` holds for all pairs of the leaf, as far as a quicker test tells.
+  bool AreAllApart(std::int32_t leaf, std::span<const collide::LeafShape> shapes, float distance) const;
+
+  /// The number of the pair, or -1.
+  std::int32_t Find(std::int32_t a, std::int32_t b) const;
+  /// Whether no two items of the pair's leaves a and b without a vertex in common come within that distance. `shapes`:
+  /// per leaf.
+  bool AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, std::span<const collide::LeafShape> shapes,
+                std::span<const collide::TriangleShapes> triangleShapes, const collide::Kernels& kernels,
+                float distance) const;
   std::size_t MemoryBytes() const;
 };
 

@@ -23,6 +23,22 @@ inline float GreatestError(const LeafShapeArgs& a, int leaf) {
   return greatest * kRowError + sum;
 }
 
+/// From twice as large ones.
+inline void StoreShapes(const Floats8* shapes, int blocks, float (*to)[3][kLanes]) {
+  const Floats half(0.5);
+  for (int first = 0; first < blocks * kLanes; first += 4) {
+    Floats start[4], end[4];
+    for (int k = 0; k < 4; ++k) {
+      float both[8];
+      shapes[first + k].Store(both);
+      start[k] = Floats::Load(both) * half;
+      end[k] = Floats::Load(both + 4) * half;
+    }
+    StoreTransposed(start, to[first / kLanes], first % kLanes);
+    StoreTransposed(end, to[blocks + first / kLanes], first % kLanes);
+  }
+}
+
 void LeafShapes(const LeafShapeArgs& a) {
   for (int leaf = a.begin; leaf < a.end; ++leaf) {
     if (a.greatestSlope[leaf] < 0) continue;
@@ -59,7 +75,37 @@ void LeafShapes(const LeafShapeArgs& a) {
       greatest = start > greatest ? start : greatest;
       greatest = end > greatest ? end : greatest;
     }
-    shape.deviation =
-        __builtin_sqrtf(greatest) / 2 + a.greatestSlope[leaf] * GreatestError(a, leaf) + size * kShapeError;
+    shape.error = a.greatestSlope[leaf] * GreatestError(a, leaf) + size * kShapeError;
+    shape.deviation = __builtin_sqrtf(greatest) / 2 + shape.error;
+    const int blocks = (count + kLanes - 1) / kLanes;
+    for (int t = count; t < blocks * kLanes; ++t) {
+      x[t] = x[0];
+      y[t] = y[0];
+    }
+    StoreShapes(x, blocks, a.triangleShapes[leaf].x);
+    StoreShapes(y, blocks, a.triangleShapes[leaf].y);
+    a.triangleShapes[leaf].blocks = 2 * blocks;
   }
+}
+
+bool AreMonotone(const TriangleShapes& triangles, const float x[3], const float y[3], float least) {
+  const auto dot = [](const Floats8 g[3], const float f[3][kLanes]) {
+    return g[0] * Floats8::Load(f[0]) + g[1] * Floats8::Load(f[1]) + g[2] * Floats8::Load(f[2]);
+  };
+  const Floats8 gx[3] = {Floats8(x[0]), Floats8(x[1]), Floats8(x[2])};
+  const Floats8 gy[3] = {Floats8(y[0]), Floats8(y[1]), Floats8(y[2])};
+  const Floats8 half(0.5), bound(least), none(0), no(-1);
+  Floats8 worst(1);
+  for (int block = 0; block < triangles.blocks; ++block) {
+    const auto *fx = triangles.x[block], *fy = triangles.y[block];
+    // The lesser eigenvalue is (xx + yy) / 2 - root(((xx - yy) / 2)^2 + xy^2).
+    const Floats8 xx = dot(gx, fx), yy = dot(gy, fy), xy = (dot(gx, fy) + dot(gy, fx)) * half;
+    const Floats8 root = (xx + yy) * half - bound, difference = (xx - yy) * half;
+    const Floats8 more = Select(root > none, root * root - (difference * difference + xy * xy), no);
+    worst = Select(more > none, worst, no);
+  }
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (worst[lane] < 0) return false;
+  }
+  return true;
 }

@@ -52,6 +52,15 @@ struct LeafBoxArgs {
 struct LeafShape {
   float x[3], y[3];  ///< What positions change by with places, along two axes, for a triangle in the middle.
   float deviation;   ///< No triangle's are farther from that, as the norm of a 3 x 2 matrix.
+  float error;       ///< Nor from what TriangleShapes has.
+};
+
+/// The same of each of its triangles, those at the start before those at the end, eight by eight. Behind the last of
+/// them the first stands again.
+struct alignas(64) TriangleShapes {
+  static constexpr int kBlocks = 4;
+  int blocks;
+  float x[kBlocks][3][kLanes], y[kBlocks][3][kLanes];
 };
 
 struct LeafShapeArgs {
@@ -63,7 +72,8 @@ struct LeafShapeArgs {
   const float* inverse;        ///< As FlatRegions has it.
   const float* greatestSlope;  ///< As FlatRegions has it; leaves that have none are left out.
   const BoxRow* rows;
-  LeafShape* shapes;  ///< Out.
+  LeafShape* shapes;               ///< Out.
+  TriangleShapes* triangleShapes;  ///< Out.
 };
 
 struct ItemBoxArgs {
@@ -125,6 +135,8 @@ struct Kernels {
   /// Writes the box of each block of `boxes` to its lane of `parents`.
   void (*parentBoxes)(const BoxBlock* boxes, int blocks, BoxBlock* parents);
   void (*leafShapes)(const LeafShapeArgs&);
+  /// Whether (Gᵀ F + Fᵀ G) / 2 > least for the shapes F of all triangles, where G is x, y.
+  bool (*areMonotone)(const TriangleShapes& triangles, const float x[3], const float y[3], float least);
   void (*itemBoxes)(const ItemBoxArgs&);
   /// Finds the leaves that are near each other.
   void (*search)(const SearchArgs&);

@@ -34,6 +34,7 @@ const Kernels kKernels = {
     .leafBoxes = LeafBoxes,
     .parentBoxes = ParentBoxes,
     .leafShapes = LeafShapes,
+    .areMonotone = AreMonotone,
     .itemBoxes = ItemBoxes,
     .search = Search,
     .nearItems = FindNearItems,

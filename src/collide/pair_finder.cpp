@@ -114,7 +114,7 @@ struct PairFinder::Impl {
 
   void BoxVertices(const MeshMotion& motion, std::span<const double> reach);
   void BoxLeaves();
-  void ShapeLeaves();
+  void ShapeLeaves(std::span<const double> reach);
   void SearchLeaves(std::span<const double> reach, bool clothPairs);
   void BoxItems();
   void CompareItems();
@@ -126,6 +126,10 @@ struct PairFinder::Impl {
         chunks, [&](int chunk) { body(chunk * chunkBlocks, std::min((chunk + 1) * chunkBlocks, leafBlocks), chunk); });
   }
   LeafItems ItemsOf(int leaf) const;
+  /// What items of the leaf are near within [m].
+  float Distance(std::span<const double> reach, int leaf) const {
+    return static_cast<float>(2 * reach[Index(clusters.body[Index(leaf)])] * (1 + 1e-6));
+  }
 
   const ContactMesh& mesh;
   const Executor& executor;
@@ -139,7 +143,9 @@ struct PairFinder::Impl {
   AlignedVector<BoxRow> rows;                   // per vertex
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
-  std::vector<LeafShape> shapes;  // per leaf
+  std::vector<LeafShape> shapes;                 // per leaf
+  AlignedVector<TriangleShapes> triangleShapes;  // per leaf
+  std::vector<std::uint8_t> areAllApart;         // per leaf, as FlatRegions has it
   AlignedVector<BoxBlock> itemBoxes;
   std::vector<std::uint8_t> isTouched;  // per leaf: may have pairs
   ChunkLists<LeafPair> leafPairs;
@@ -158,6 +164,8 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       chunks((leafBlocks + chunkBlocks - 1) / chunkBlocks),
       rows(m.body.size()),
       shapes(Index(clusters.clothLeaves)),
+      triangleShapes(Index(clusters.clothLeaves)),
+      areAllApart(Index(clusters.clothLeaves)),
       isTouched(Index(clusters.leaves())),
       leafPairs(chunks),
       vertexTriangleLists(chunks),
@@ -216,7 +224,7 @@ void PairFinder::Impl::BoxLeaves() {
   }
 }
 
-void PairFinder::Impl::ShapeLeaves() {
+void PairFinder::Impl::ShapeLeaves(std::span<const double> reach) {
   ForBlocks([&](int begin, int end, int) {
     kernels.leafShapes({.begin = begin * kLanes,
                         .end = std::min(end * kLanes, clusters.clothLeaves),
@@ -227,7 +235,13 @@ void PairFinder::Impl::ShapeLeaves() {
                         .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
                         .greatestSlope = regions.greatestSlope.data(),
                         .rows = rows.data(),
-                        .shapes = shapes.data()});
+                        .shapes = shapes.data(),
+                        .triangleShapes = triangleShapes.data()});
+  });
+  ForBlocks([&](int begin, int end, int) {
+    for (int leaf = begin * kLanes; leaf < std::min(end * kLanes, clusters.clothLeaves); ++leaf) {
+      areAllApart[Index(leaf)] = regions.AreAllApart(leaf, shapes, Distance(reach, leaf)) ? 1 : 0;
+    }
   });
 }
 
@@ -237,9 +251,9 @@ void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPai
     const auto put = [&](const LeafPair* pairs, int count) {
       for (int i = 0; i < count; ++i) {
         const auto [a, b] = pairs[i];
-        const std::int32_t body = clusters.body[Index(a)];
-        if (body == clusters.body[Index(b)] &&
-            regions.AreApart(a, b, shapes, static_cast<float>(2 * reach[Index(body)] * (1 + 1e-6)))) {
+        const std::int32_t pair = regions.Find(a, b);
+        if (pair >= 0 && (areAllApart[Index(a)] != 0 ||
+                          regions.AreApart(pair, a, b, shapes, triangleShapes, kernels, Distance(reach, a)))) {
           continue;
         }
         leafPairs.Room(chunk)[0] = pairs[i];
@@ -347,7 +361,7 @@ void PairFinder::Find(const MeshMotion& motion, std::span<const double> reach, b
   if (s.clusters.clothLeaves == 0) return;
   s.BoxVertices(motion, reach);
   s.BoxLeaves();
-  if (clothPairs) s.ShapeLeaves();
+  if (clothPairs) s.ShapeLeaves(reach);
   s.SearchLeaves(reach, clothPairs);
   s.BoxItems();
   s.CompareItems();
@@ -364,10 +378,10 @@ std::span<const VertexQuad> PairFinder::edgeEdge() const {
 std::size_t PairFinder::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   const Impl& s = *impl_;
-  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.firstItemBlock) +
-                    bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.isTouched) + s.leafPairs.MemoryBytes() +
-                    s.vertexTriangleLists.MemoryBytes() + s.edgeEdgeLists.MemoryBytes() +
-                    s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
+  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.triangleShapes) +
+                    bytes(s.areAllApart) + bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) +
+                    bytes(s.isTouched) + s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() +
+                    s.edgeEdgeLists.MemoryBytes() + s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
   for (const auto& level : s.levels) sum += bytes(level);
   return sum;
 }

@@ -24,9 +24,9 @@ TEST_CASE("a search that finds no more pairs than before does not allocate") {
   m.start = flat;
   CHECK(CountAllocations(find) == 0);
   const std::size_t memory = finder.MemoryBytes();
-  CHECK(memory > 0);
+  CHECK(memory > finder.edgeEdge().size_bytes());
   SetShape(m, [](const Vec3& p) { return Layers(p, 0.49, 16, 0.002); });
-  CHECK(CountAllocations(find) > 0);
+  find();
+  CHECK(finder.MemoryBytes() >= memory);
   CHECK(CountAllocations(find) == 0);
-  CHECK(finder.MemoryBytes() > memory);
 }
