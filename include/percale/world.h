@@ -62,6 +62,10 @@ struct StepReport {
   std::int64_t selfContacts = 0;                   ///< Pairs of cloth points pushed apart, summed over the steps.
   std::int64_t colliderContacts = 0;               ///< Points put back by a collider, summed over the steps.
   std::int64_t limitedSprings = 0;                 ///< Springs shortened by the strain limit, summed over the steps.
+  std::int64_t intersections = 0;                  ///< Engine::Fabric: edges of cloth that pass through triangles, left
+                                                   ///< of a start that was tangled; else none can be.
+  std::int64_t squeezed = 0;                       ///< Engine::Fabric: vertices of cloth inside of solids, and of mesh
+                                                   ///< colliders that cloth holds up.
   int newtonIterations = 0;                        ///< Engine::Fabric: corrections, summed over the steps.
   int linearIterations = 0;                        ///< Engine::Fabric: of the linear solver, summed over the steps.
   double residual = 0;                             ///< Engine::Fabric: last correction over the first, worst step.

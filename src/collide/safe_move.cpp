@@ -24,12 +24,44 @@ Corners<double> Gather(std::span<const Vec3> x, const VertexQuad& quad) {
   return corners;
 }
 
+/// The smallest way to write a pair.
+VertexQuad Smallest(PairKind kind, VertexQuad quad) {
+  if (kind == PairKind::VertexTriangle) {
+    std::sort(quad.begin() + 1, quad.end());
+    return quad;
+  }
+  std::sort(quad.begin(), quad.begin() + 2);
+  std::sort(quad.begin() + 2, quad.end());
+  return std::min(quad, VertexQuad{quad[2], quad[3], quad[0], quad[1]});
+}
+
 constexpr PairKind kKinds[2] = {PairKind::VertexTriangle, PairKind::EdgeEdge};
 
 }  // namespace
 
 double FloorOf(double gap, double distance) {
   return std::min(0.999 * gap, std::max(std::min(0.2 * gap, 0.25 * distance), 0.05 * distance));
+}
+
+void ExemptPairs::Take(std::span<const Intersection> met, std::span<const Triangle> triangles) {
+  for (std::vector<VertexQuad>& pairs : pairs_) pairs.clear();
+  for (const Intersection& at : met) {
+    const Triangle& t = triangles[Index(at.triangle)];
+    const std::int32_t corner[3] = {t.a, t.b, t.c};
+    for (const std::int32_t v : at.edge) pairs_[0].push_back(Smallest(PairKind::VertexTriangle, {v, t.a, t.b, t.c}));
+    for (std::size_t k = 0; k < 3; ++k) {
+      pairs_[1].push_back(Smallest(PairKind::EdgeEdge, {at.edge[0], at.edge[1], corner[k], corner[(k + 1) % 3]}));
+    }
+  }
+  for (std::vector<VertexQuad>& pairs : pairs_) {
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  }
+}
+
+bool ExemptPairs::Has(PairKind kind, const VertexQuad& quad) const {
+  const std::vector<VertexQuad>& pairs = pairs_[kind == PairKind::VertexTriangle ? 0 : 1];
+  return std::binary_search(pairs.begin(), pairs.end(), Smallest(kind, quad));
 }
 
 SafeMove::SafeMove(const ContactMesh& mesh, const Executor& executor)
@@ -78,6 +110,7 @@ void SafeMove::Search(const Ways& ways, const ContactDistances& distances) {
   ForPairs([&](PairKind kind, NearPair& pair, double& share) {
     pair.distance = DistanceOf(kind, pair.vertex, distances);
     pair.start = StateOf(kind, Gather(ways.start, pair.vertex));
+    pair.exempt = !exempt_.empty() && exempt_.Has(kind, pair.vertex);
     share = 1;
   });
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});
@@ -89,7 +122,7 @@ std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
     share = 1;
     const VertexQuad& v = pair.vertex;
     if (!(changed_[Index(v[0])] | changed_[Index(v[1])] | changed_[Index(v[2])] | changed_[Index(v[3])])) return;
-    if (!(pair.start.gap > 0)) return;
+    if (!(pair.start.gap > 0) || pair.exempt) return;
     Corners<double> way;
     for (std::size_t k = 0; k < 4; ++k) way[k] = From<double>(ways.way[Index(v[k])]) * ways.share[Index(v[k])];
     share = ShareApart(kind, Gather(ways.start, v), way, pair.start, FloorOf(pair.start.gap, pair.distance));
@@ -148,9 +181,6 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
     report.wanted += wanted;
     report.lost += wanted * lost * lost;
     report.cut += lost > 0 ? 1 : 0;
-  }
-  for (const Pairs& pairs : pairs_) {
-    for (const NearPair& pair : pairs.list) report.violated += pair.start.gap > 0 ? 0 : 1;
   }
   return report;
 }

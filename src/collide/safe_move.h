@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collide/contact_mesh.h"
+#include "collide/intersections.h"
 #include "collide/pair_finder.h"
 #include "collide/proximity.h"
 #include "core/executor.h"
@@ -25,20 +26,35 @@ struct NearPair {
   VertexQuad vertex;
   double distance = 0;  ///< Below which they are in contact [m].
   PairState start;      ///< As the move began.
+  bool exempt = false;  ///< May pass through each other.
+};
+
+/// Pairs that nothing keeps apart, as what they belong to is tangled.
+class ExemptPairs {
+ public:
+  /// Those of edges and triangles that meet: of either end with the triangle, and of the edge with its sides.
+  void Take(std::span<const Intersection> met, std::span<const Triangle> triangles);
+  bool empty() const { return pairs_[0].empty(); }
+  bool Has(PairKind kind, const VertexQuad& quad) const;
+
+ private:
+  std::vector<VertexQuad> pairs_[2];  // by kind; ascending, of each the smallest way to write it
 };
 
 struct SafeMoveReport {
   int detections = 0;         ///< Searches for pairs.
-  std::int64_t cut = 0;       ///< Vertices that did not go all their way.
-  std::int64_t violated = 0;  ///< Pairs that met at the start: they are let be.
-  double lost = 0;            ///< Sum of the squared ways that were cut off [m^2].
-  double wanted = 0;          ///< Sum of the squared ways [m^2].
+  std::int64_t cut = 0;        ///< Vertices that did not go all their way.
+  double lost = 0;             ///< Sum of the squared ways that were cut off [m^2].
+  double wanted = 0;           ///< Sum of the squared ways [m^2].
 };
 
 class SafeMove {
  public:
   /// Both must outlive it.
   SafeMove(const ContactMesh& mesh, const Executor& executor);
+
+  /// These may pass through each other.
+  ExemptPairs& exempt() { return exempt_; }
 
   /// Shortens ways from `start` so that no pair meets: writes the share of its way that each vertex goes. A vertex
   /// without a way stays. Allocates only where there are more pairs than ever before.
@@ -76,6 +92,7 @@ class SafeMove {
   const ContactMesh& mesh_;
   const Executor& executor_;
   PairFinder finder_;
+  ExemptPairs exempt_;
   Pairs pairs_[2];                                  // by kind
   std::vector<std::uint8_t> cut_, changed_, next_;  // per vertex
 };

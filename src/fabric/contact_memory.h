@@ -11,9 +11,9 @@
 
 namespace percale::fabric {
 
-/// What touches: four vertices and how they pair, or a vertex and the number of a shape.
+/// What touches: four vertices and how they pair, or a vertex and the number of a shape. What is tangled is not remembered.
 struct ContactKey {
-  enum class Kind : std::int32_t { VertexTriangle, EdgeEdge, Shape };
+  enum class Kind : std::int32_t { VertexTriangle, EdgeEdge, Shape, Tangle };
   Kind kind = Kind::VertexTriangle;
   std::array<std::int32_t, 4> number{};
   friend bool operator==(const ContactKey&, const ContactKey&) = default;

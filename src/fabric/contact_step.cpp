@@ -10,6 +10,8 @@ namespace {
 
 /// The distance of contact where the scene states none, over the mean edge.
 constexpr double kDistance = 0.3;
+/// So many are untangled at a time.
+constexpr int kMostTangled = 1 << 20;
 /// How near cloth may come to a solid, how near it feels it soon, and how deep in it counts at most, over the distance.
 constexpr double kLeastGap = 0.2, kSoon = 2, kDeepest = 0.5;
 
@@ -77,7 +79,9 @@ ContactStep::ContactStep(const Scene& scene, const FabricModel& model, const Exe
       obstacles_(scene),
       mesh_(MakeContactMesh(model, obstacles_)),
       safeMove_(mesh_, executor),
-      contacts_(mesh_, executor) {
+      contacts_(mesh_, executor),
+      judge_(mesh_.vertices(), mesh_.triangles, mesh_.clothVertices),
+      untangler_(mesh_) {
   const std::size_t count = Index(mesh_.vertices());
   for (std::vector<Vec3>* vectors : {&begin_, &start_, &way_}) vectors->resize(count);
   share_.resize(count);
@@ -92,6 +96,7 @@ void ContactStep::Configure(const Scene& scene) {
   obstacles_.Configure(scene);
   const std::vector<double> meanEdges = MeanEdges(mesh_);
   distances_.half.assign(Index(mesh_.bodies()), 0);
+  if (distances_.clothPairs != scene.simulation.selfCollision) judged_ = false;
   distances_.clothPairs = scene.simulation.selfCollision;
   surfaces_.assign(Index(mesh_.bodies()), {});
   double most = 0;
@@ -118,7 +123,8 @@ void ContactStep::Restart(const Scene& scene, double time) {
   for (const PlacedSolid& solid : placed_) solids_.push_back({solid, solid});
   obstacles_.PlaceAt(scene, time, obstacle_);
   obstacleBefore_ = obstacleTarget_ = obstacle_;
-  listed_ = false;
+  met_.clear();
+  judged_ = listed_ = false;
 }
 
 void ContactStep::MoveColliders(const Scene& scene, double time) {
@@ -136,6 +142,7 @@ void ContactStep::MoveColliders(const Scene& scene, double time) {
 
 void ContactStep::Begin(std::span<const Vec3> previous, std::span<const Vec3> start) {
   moves_ = 0;
+  if (!judged_) Judge(start);
   if (listed_) return;
   for (std::size_t v = 0; v < start.size(); ++v) start_[v] = previous[v], way_[v] = start[v] - previous[v];
   for (std::size_t v = 0; v < obstacle_.size(); ++v) {
@@ -167,6 +174,8 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
                    .surfaces = surfaces_});
   contacts_.AddPairs(PairKind::VertexTriangle, safeMove_.vertexTriangle());
   contacts_.AddPairs(PairKind::EdgeEdge, safeMove_.edgeEdge());
+  untangler_.Find(met_, start_, tangles_);
+  contacts_.AddTangles(tangles_, distances_);
   for (std::size_t s = 0; s < solids_.size(); ++s) {
     const ContactSurface surface{.friction = solids_[s].end.friction, .rulesFriction = true};
     const auto distanceOf = [&](std::size_t v) { return 2 * distances_.half[Index(mesh_.body[v])]; };
@@ -219,6 +228,31 @@ SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end)
 
 void ContactStep::End(std::span<const Vec3> y) {
   contacts_.End(y);
+  if (!met_.empty()) Judge(y);
+}
+
+void ContactStep::MoveAside(std::span<const Vec3> now, std::span<Vec3> end) {
+  if (!judged_) Judge(now);
+  obstacleTarget_ = obstacle_;
+  for (SolidStep& solid : solids_) solid.start = solid.end;
+  Move(now, end);
+  if (!met_.empty()) Judge(end);
+  listed_ = false;
+}
+
+/// What passes through what. Those pairs are let be until they have come apart.
+void ContactStep::Judge(std::span<const Vec3> cloth) {
+  std::copy(cloth.begin(), cloth.end(), start_.begin());
+  std::copy(obstacle_.begin(), obstacle_.end(), start_.begin() + static_cast<std::ptrdiff_t>(cloth.size()));
+  met_.clear();
+  if (distances_.clothPairs || !obstacle_.empty()) met_ = judge_.Count(start_, executor_, kMostTangled).first;
+  if (!distances_.clothPairs) {
+    std::erase_if(met_, [&](const Intersection& met) {
+      return std::max(met.edge[1], mesh_.triangles[Index(met.triangle)].a) < mesh_.clothVertices;
+    });
+  }
+  safeMove_.exempt().Take(met_, mesh_.triangles);
+  judged_ = true;
 }
 
 void ContactStep::ReadState(std::vector<Touch>& touches, std::vector<Vec3>& obstacles) const {

@@ -10,6 +10,7 @@
 #include "collide/obstacles.h"
 #include "collide/safe_move.h"
 #include "collide/solid_path.h"
+#include "collide/untangle.h"
 #include "core/executor.h"
 #include "fabric/contacts.h"
 #include "fabric/fabric_model.h"
@@ -43,6 +44,12 @@ class ContactStep {
   /// The step has ended at y.
   void End(std::span<const Vec3> y);
 
+  /// Between two steps: from now towards `end` as far as all can go, colliders at rest.
+  void MoveAside(std::span<const Vec3> now, std::span<Vec3> end);
+  /// Pairs of an edge and a triangle that pass through each other, as was last looked: at a start, and at the end of
+  /// each step that began with some; of cloth that is apart none can become any.
+  std::int64_t tangled() const { return static_cast<std::int64_t>(met_.size()); }
+
   /// How many vertices of cloth are inside of solids, and how many of obstacles wait for cloth to make way: what is
   /// squeezed gives way to colliders, and they to it, but never cloth to cloth.
   std::int64_t CountSqueezed(std::span<const Vec3> y) const;
@@ -56,6 +63,8 @@ class ContactStep {
   const Contacts& contacts() const { return contacts_; }
 
  private:
+  void Judge(std::span<const Vec3> cloth);
+
   const FabricModel& model_;
   const Executor& executor_;
   Obstacles obstacles_;
@@ -71,6 +80,11 @@ class ContactStep {
   // Of the mesh, cloth and obstacles:
   std::vector<Vec3> begin_, start_, way_;
   std::vector<double> share_;
+  IntersectionJudge judge_;
+  Untangler untangler_;
+  std::vector<Intersection> met_;  // what is tangled
+  std::vector<Tangle> tangles_;
+  bool judged_ = false;  // Whether that is known.
   std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid
   bool listed_ = false;                 // What is near is known.
   int moves_ = 0;                       // Of this step.

@@ -159,7 +159,7 @@ void Contacts::AddPairs(PairKind kind, std::span<const NearPair> pairs) {
         way[k] = From<double>(step_.way[Index(pair.vertex[k])]);
       }
       const PairState now = StateOf(kind, x);
-      if (!(now.gap > 0)) continue;
+      if (!(now.gap > 0) || pair.exempt) continue;
       PairState plane = now;
       const double share = ShareApart(kind, x, way, now, FloorOf(now.gap, pair.distance));
       if (share < 1) {
@@ -199,6 +199,27 @@ void Contacts::AddPairs(PairKind kind, std::span<const NearPair> pairs) {
   });
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     if (kept_[p]) contacts_.push_back(found_[p]);
+  }
+}
+
+void Contacts::AddTangles(std::span<const Tangle> tangles, const ContactDistances& distances) {
+  for (const Tangle& tangle : tangles) {
+    Contact c;
+    c.key.kind = ContactKey::Kind::Tangle;
+    c.normal = tangle.direction;
+    const auto put = [&](std::size_t k, std::int32_t v, double weight) {
+      c.weight[k] = weight;
+      c.vertex[k] = v < mesh_.clothVertices ? v : -1;
+      // What is no gap now is to become one of the distance.
+      const Vec3 moved = c.vertex[k] < 0 ? step_.way[Index(v)] : -step_.start[Index(v)];
+      c.offset += weight * Dot(c.normal, From<double>(moved));
+    };
+    put(0, tangle.vertex, 1);
+    for (std::size_t k = 0; k < 3; ++k) put(k + 1, tangle.corner[k], -tangle.weight[k]);
+    const double distance = distances.half[Index(mesh_.body[Index(tangle.vertex)])] +
+                            distances.half[Index(mesh_.body[Index(tangle.corner[0])])];
+    Fit(distance, distance, distance, c);
+    if (c.stiffness > 0) contacts_.push_back(c);
   }
 }
 
@@ -281,7 +302,7 @@ void Contacts::End(std::span<const Vec3> y) {
   for (Contact& c : contacts_) {
     const Vector3<double> sum = Sum(c, y);
     const double depth = c.distance - Dot(c.normal, sum) - c.offset;
-    if (!(depth > 0)) continue;
+    if (!(depth > 0) || c.key.kind == ContactKey::Kind::Tangle) continue;
     Stick stick;
     stick.force = c.stiffness * depth;
     stick.slide = Tangential(sum - c.slideFrom, c.normal);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "collide/safe_move.h"
+#include "collide/untangle.h"
 #include "fabric/contact_memory.h"
 #include "fabric/system_matrix.h"
 #include "math/vector3.h"
@@ -61,6 +62,8 @@ class Contacts {
   void Begin(const Step& step);
   /// Planes between what is near, or meets on the way. The spans of the step must stay until all are added.
   void AddPairs(PairKind kind, std::span<const NearPair> pairs);
+  /// Pulls at what is tangled.
+  void AddTangles(std::span<const Tangle> tangles, const ContactDistances& distances);
   /// A plane through `point`, which is where the surface will be at the end of the step and was at `pointBefore` at
   /// its start, off which a vertex of cloth keeps. `gap`: at the start [m].
   void AddPlane(const ContactKey& key, std::int32_t vertex, double gap, double distance, const Vector3<double>& normal,

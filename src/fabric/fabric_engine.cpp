@@ -232,6 +232,8 @@ void FabricEngine::Move() {
     if (!contact.active) continue;
     ++(contact.key.kind == ContactKey::Kind::Shape ? counts_.colliderContacts : counts_.selfContacts);
   }
+  counts_.intersections = contact_->tangled();
+  counts_.squeezed = contact_->CountSqueezed(position_);
   YieldFolds();
 }
 
@@ -242,28 +244,33 @@ void FabricEngine::CollideBall(Ball& ball) {
     bool fixed(int v) const { return !e.free_[Index(v)]; }
     double mass(int v) const { return e.model_.mass[Index(v)]; }
     const Vec3& at(int v) const { return e.position_[Index(v)]; }
-    void put(int v, const Vec3& x) { e.position_[Index(v)] = x; }
+    void put(int v, const Vec3& x) { e.next_[Index(v)] = x; }
   };
-  counts_.colliderContacts += PushApart(ball, h_, Points{*this}, touched_);
+  next_ = position_;
+  const std::int64_t contacts = PushApart(ball, h_, Points{*this}, touched_);
+  counts_.colliderContacts += contacts;
+  if (contacts == 0) return;
+  contact_->MoveAside(position_, next_);
+  std::swap(position_, next_);
 }
 
 void FabricEngine::Place(const Handle& handle) {
   const int first = model_.firstVertex[Index(handle.cloth)], end = model_.firstVertex[Index(handle.cloth) + 1];
   const int centre = first + handle.vertex;
   const Vec3 way = handle.target - position_[Index(centre)];
-  const auto shift = [&](int v, const Vec3& by) {
-    position_[Index(v)] += by;
-    previous_[Index(v)] += by;
-  };
+  next_ = position_;
   if (const Pin* pin = pins_.Find(centre)) {
     pins_.Shift(Index(pin - pins_.All().data()), way);
-    shift(centre, way);
-    return;
+    next_[Index(centre)] += way;
+  } else {
+    for (int v = first; v < end; ++v) {
+      const double share = GripShare(handle, model_.start[Index(v)] - model_.start[Index(centre)]);
+      if (share > 0 && free_[Index(v)]) next_[Index(v)] += way * share;
+    }
   }
-  for (int v = first; v < end; ++v) {
-    const double share = GripShare(handle, model_.start[Index(v)] - model_.start[Index(centre)]);
-    if (share > 0 && free_[Index(v)]) shift(v, way * share);
-  }
+  contact_->MoveAside(position_, next_);
+  for (std::size_t v = 0; v < next_.size(); ++v) previous_[v] += next_[v] - position_[v];
+  std::swap(position_, next_);
 }
 
 EngineCounts FabricEngine::TakeCounts() {

@@ -20,6 +20,7 @@ struct Stretch {
 /// What an engine did since its counts were last taken.
 struct EngineCounts {
   std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
+  std::int64_t intersections = 0, squeezed = 0;  ///< As the last step left them.
   int newtonIterations = 0, linearIterations = 0;
   double residual = 0;
   bool converged = true;

@@ -222,6 +222,8 @@ void World::Impl::FinishStep() {
   report.colliderContacts = counts.colliderContacts;
   report.limitedSprings = counts.limitedSprings;
   report.newtonIterations = counts.newtonIterations;
+  report.intersections = counts.intersections;
+  report.squeezed = counts.squeezed;
   report.linearIterations = counts.linearIterations;
   report.residual = counts.residual;
   report.converged = counts.converged;
