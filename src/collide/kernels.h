@@ -21,9 +21,10 @@ struct alignas(64) BoxRow {
   float low[2][4], high[2][4];  ///< x, y, z and nothing, at the start and at the end [m].
 };
 
-/// The boxes of eight things. An empty one has low = infinity and high = -infinity.
+/// The boxes of eight things: how far they go towards -x, -y, -z at the start, the same at the end, then towards x, y,
+/// z at the start and at the end [m]. Empty ones go to -infinity.
 struct alignas(64) BoxBlock {
-  float low[6][kLanes], high[6][kLanes];  ///< x, y, z at the start, x, y, z at the end [m].
+  float extent[12][kLanes];
 };
 
 struct RowArgs {

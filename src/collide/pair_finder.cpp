@@ -173,8 +173,7 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       vertexTriangle(chunks),
       edgeEdge(chunks) {
   BoxBlock empty;
-  std::fill_n(empty.low[0], 6 * kLanes, INFINITY);
-  std::fill_n(empty.high[0], 6 * kLanes, -INFINITY);
+  for (auto& extents : empty.extent) std::fill_n(extents, kLanes, -INFINITY);
   levels.emplace_back(Index(leafBlocks), empty);
   do {
     levels.emplace_back(Index(Blocks(static_cast<std::int64_t>(levels.back().size()))), empty);
