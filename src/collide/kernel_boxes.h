@@ -1,7 +1,7 @@
 // The boxes of vertices, items, leaves and nodes. Included by kernels_impl.h inside the namespace of an instruction
 // set, like everything there; never elsewhere.
 
-constexpr float kInfinity = __builtin_inff();
+constexpr float kInfinity = INFINITY;
 
 inline Floats Min(Floats a, Floats b) {
   return Select(b > a, a, b);
