@@ -77,6 +77,7 @@ struct LeafShapeArgs {
   TriangleShapes* triangleShapes;  ///< Out.
 };
 
+/// Items of one kind.
 struct ItemBoxArgs {
   const std::int32_t* corners;
   int cornersPerItem;  ///< 1, 2 or 3.
@@ -110,7 +111,8 @@ struct LeafItems {
   const BoxBlock* vertexBoxes;    ///< Of its own.
 };
 
-/// Pairs of items of two leaves a and b, each by its number in its leaf. Behind `most` there is room for whole blocks.
+/// Pairs of items of two leaves a and b, each by its number in its leaf. Arrays have room for one block more than there
+/// can be.
 struct NearItems {
   static constexpr int kMostEdges = 48 * 48, kMostTriangles = 48 * 16;
   int edges = 0, vertexTriangle = 0, triangleVertex = 0;

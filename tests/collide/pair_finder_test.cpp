@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -22,12 +23,31 @@ namespace {
 constexpr double kSpacing = 0.01;           // m
 constexpr double kReach = 0.15 * kSpacing;  // of a body
 
+/// Whether pairs have the mesh's triangles and edges, their vertices in the same order.
+bool AreOfMesh(const ContactMesh& mesh, const PairFinder& finder) {
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<std::array<std::int32_t, 2>> edges;
+  for (const auto& [a, b, c] : mesh.triangles) triangles.push_back({a, b, c});
+  for (const auto& [a, b] : mesh.edges) edges.push_back({a, b});
+  std::sort(triangles.begin(), triangles.end());
+  std::sort(edges.begin(), edges.end());
+  const auto has = [](const auto& all, const auto& one) { return std::binary_search(all.begin(), all.end(), one); };
+  return std::all_of(finder.vertexTriangle().begin(), finder.vertexTriangle().end(),
+                     [&](const VertexQuad& q) {
+                       return has(triangles, std::array{q[1], q[2], q[3]});
+                     }) &&
+         std::all_of(finder.edgeEdge().begin(), finder.edgeEdge().end(), [&](const VertexQuad& q) {
+           return has(edges, std::array{q[0], q[1]}) && has(edges, std::array{q[2], q[3]});
+         });
+}
+
 /// What is wrong with what is found, or nothing. All that come within reach are, and none whose boxes are `slack` [m]
 /// farther apart at all times. `hidden`: counts pairs whose boxes come within reach, but that do not.
 std::string Fault(const MovingMesh& m, double slack = 1e-6, std::size_t* hidden = nullptr) {
   const Executor executor(1);
   PairFinder finder(m.mesh, executor);
   finder.Find(m.Motion(), m.reach, m.clothPairs);
+  if (!AreOfMesh(m.mesh, finder)) return "what the mesh does not have";
   const PairSet vertexTriangle = Sorted(finder.vertexTriangle()), edgeEdge = SortedEdges(finder.edgeEdge());
   for (const PairSet* set : {&vertexTriangle, &edgeEdge}) {
     if (std::adjacent_find(set->begin(), set->end()) != set->end()) return "a pair that is listed twice";
