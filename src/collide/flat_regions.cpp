@@ -81,6 +81,19 @@ void MakeHalfPlanes(const Polygon& hull, double inside, std::vector<HalfPlane>& 
   }
 }
 
+enum class Location { Inside, Outside, Across };
+
+/// Where a triangle lies. Across also where that is not plain to see.
+Location LocationOf(const Vec2 (&corners)[3], const std::vector<HalfPlane>& planes) {
+  bool isInside = true;
+  for (const HalfPlane& plane : planes) {
+    const double a = plane.Depth(corners[0]), b = plane.Depth(corners[1]), c = plane.Depth(corners[2]);
+    if (a < 0 && b < 0 && c < 0) return Location::Outside;
+    isInside = isInside && a >= 0 && b >= 0 && c >= 0;
+  }
+  return isInside ? Location::Inside : Location::Across;
+}
+
 /// Cuts off what is not in all of them.
 void Clip(Polygon& polygon, const std::vector<HalfPlane>& planes, Polygon& scratch) {
   for (const HalfPlane& plane : planes) {
@@ -137,6 +150,8 @@ class Builder {
   std::vector<std::vector<std::int32_t>> leafNeighbours_;  // with itself, ascending
   std::vector<int> view_;         // per leaf: the axis that places are seen along, plus 3 if from below; or -1
   std::vector<double> altitude_;  // per leaf, the least
+  std::vector<Polygon> hulls_;    // per leaf, of its places so seen
+  std::vector<double> area_;      // per triangle, likewise
   FlatRegions regions_;
 
   Polygon points_, hull_, piece_, scratch_;
@@ -235,6 +250,7 @@ void Builder::ShapeLeaf(std::int32_t leaf) {
     const Vec2 a = Place(At(t).a, axis), ab = Minus(Place(At(t).b, axis), a), ac = Minus(Place(At(t).c, axis), a);
     const double twice = Cross(ab, ac);
     isFlat = isFlat && twice * normal[axis] > 0;  // else it is turned over or has no area
+    area_.push_back(std::abs(twice) / 2);
     const double sides[] = {Size(ab), Size(ac), Size(Minus(ac, ab))};
     altitude = std::min(altitude, std::abs(twice) / *std::max_element(sides, sides + 3));
     slope = std::max(slope, (sides[0] + sides[1] + sides[2]) / std::abs(twice));
@@ -242,6 +258,13 @@ void Builder::ShapeLeaf(std::int32_t leaf) {
                                 static_cast<float>(-ab.y / twice), static_cast<float>(ab.x / twice)});
   }
   altitude_.push_back(altitude);
+  points_.clear();
+  if (isFlat) {
+    for (const std::int32_t v : clusters_.Vertices(leaf)) points_.push_back(Place(v, axis));
+    MakeHull(points_, hull_);
+    points_ = hull_;
+  }
+  hulls_.push_back(points_);
   view_.push_back(!isFlat ? -1 : normal[axis] > 0 ? axis : axis + 3);
   regions_.greatestSlope.push_back(isFlat ? static_cast<float>(slope * (1 + 1e-6)) : -1.0f);
 }
@@ -250,13 +273,11 @@ void Builder::ShapeLeaf(std::int32_t leaf) {
 void Builder::AddRegion(std::int32_t a, std::int32_t b) {
   const int view = view_[Index(a)], axis = view % 3;
   if (view < 0 || view_[Index(b)] != view) return;
-  points_.clear();
-  for (const std::int32_t leaf : {a, b}) {
-    for (const std::int32_t v : clusters_.Vertices(leaf)) points_.push_back(Place(v, axis));
-  }
+  points_ = hulls_[Index(a)];
+  points_.insert(points_.end(), hulls_[Index(b)].begin(), hulls_[Index(b)].end());
   MakeHull(points_, hull_);
-  const double area = Area(hull_);
-  MakeHalfPlanes(hull_, kInside * std::sqrt(area), planes_);
+  const double hullArea = Area(hull_);
+  MakeHalfPlanes(hull_, kInside * std::sqrt(hullArea), planes_);
 
   // From the first triangle on to all that the hull reaches into.
   double covered = 0, altitude = std::numeric_limits<double>::infinity();
@@ -269,15 +290,18 @@ void Builder::AddRegion(std::int32_t a, std::int32_t b) {
     const std::int32_t t = open_.back(), leaf = leafOf_[Index(t)];
     open_.pop_back();
     const Vec2 corners[] = {Place(At(t).a, axis), Place(At(t).b, axis), Place(At(t).c, axis)};
-    piece_.assign(corners, corners + 3);
-    if (leaf == a || leaf == b) {
-      ++inLeaves;
-    } else {
+    const Location location = leaf == a || leaf == b ? Location::Inside : LocationOf(corners, planes_);
+    if (location == Location::Outside) continue;
+    double area = area_[Index(t)];
+    if (location == Location::Across) {
+      piece_.assign(corners, corners + 3);
       Clip(piece_, planes_, scratch_);
       if (piece_.empty()) continue;
-      if (view_[Index(leaf)] != view) return;
+      area = std::abs(Area(piece_));
     }
-    covered += std::abs(Area(piece_));
+    if (view_[Index(leaf)] != view) return;
+    covered += area;
+    inLeaves += leaf == a || leaf == b ? 1 : 0;
     if (leaves_.empty() || leaves_.back() != leaf) leaves_.push_back(leaf);
     altitude = std::min(altitude, altitude_[Index(leaf)]);
     for (std::size_t side = 0; side < 3; ++side) {
@@ -294,7 +318,7 @@ void Builder::AddRegion(std::int32_t a, std::int32_t b) {
   }
   // It is covered once, and by what hangs together with both.
   const std::size_t triangles = clusters_.Triangles(a).size() + (a == b ? 0 : clusters_.Triangles(b).size());
-  if (inLeaves != triangles || !(std::abs(covered - area) <= kAreaError * area)) return;
+  if (inLeaves != triangles || !(std::abs(covered - hullArea) <= kAreaError * hullArea)) return;
   Unite(leaves_);
   regions_.other.push_back(b);
   regions_.altitude.push_back(static_cast<float>(altitude * (1 - 1e-6)));

@@ -1,7 +1,7 @@
 // The boxes of vertices, items, leaves and nodes. Included by kernels_impl.h inside the namespace of an instruction
 // set, like everything there; never elsewhere.
 
-constexpr float kInfinity = __builtin_inff();
+constexpr float kInfinity = INFINITY;
 
 inline Floats Min(Floats a, Floats b) {
   return Select(b > a, a, b);
@@ -48,8 +48,8 @@ struct Row {
   /// Into one lane.
   void Store(BoxBlock& to, int lane) const {
     for (int i = 0; i < 6; ++i) {
-      to.low[i][lane] = low[i / 3][i % 3];
-      to.high[i][lane] = high[i / 3][i % 3];
+      to.extent[i][lane] = -low[i / 3][i % 3];
+      to.extent[i + 6][lane] = high[i / 3][i % 3];
     }
   }
 };
@@ -104,12 +104,10 @@ void LeafBoxes(const LeafBoxArgs& a) {
 void ParentBoxes(const BoxBlock* boxes, int blocks, BoxBlock* parents) {
   for (int block = 0; block < blocks; ++block) {
     BoxBlock& parent = parents[block / kLanes];
-    for (int i = 0; i < 6; ++i) {
-      float low = kInfinity, high = -kInfinity;
-      for (const float x : boxes[block].low[i]) low = x < low ? x : low;
-      for (const float x : boxes[block].high[i]) high = x > high ? x : high;
-      parent.low[i][block % kLanes] = low;
-      parent.high[i][block % kLanes] = high;
+    for (int i = 0; i < 12; ++i) {
+      float most = -kInfinity;
+      for (const float x : boxes[block].extent[i]) most = x > most ? x : most;
+      parent.extent[i][block % kLanes] = most;
     }
   }
 }
@@ -134,7 +132,7 @@ inline void StoreTransposed(const Floats rows[4], float (*to)[kLanes], int lane)
 template <int corners>
 void ItemBoxes(const ItemBoxArgs& a) {
   for (int first = 0; first < a.items; first += 4) {
-    Floats low[2][4], high[2][4];
+    Floats below[2][4], above[2][4];
     for (int k = 0; k < 4; ++k) {
       Row row = Row::Empty();
       if (first + k < a.items) {
@@ -144,14 +142,14 @@ void ItemBoxes(const ItemBoxArgs& a) {
         if (corners > 2) row.Add(Row::Load(a.rows[at[2]]));
       }
       for (int i = 0; i < 2; ++i) {
-        low[i][k] = row.low[i];
-        high[i][k] = row.high[i];
+        below[i][k] = -row.low[i];
+        above[i][k] = row.high[i];
       }
     }
     BoxBlock& block = a.boxes[first / kLanes];
     for (int i = 0; i < 2; ++i) {
-      StoreTransposed(low[i], block.low + 3 * i, first % kLanes);
-      StoreTransposed(high[i], block.high + 3 * i, first % kLanes);
+      StoreTransposed(below[i], block.extent + 3 * i, first % kLanes);
+      StoreTransposed(above[i], block.extent + 6 + 3 * i, first % kLanes);
     }
   }
 }

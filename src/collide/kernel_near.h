@@ -2,16 +2,13 @@
 // everything there; never elsewhere.
 
 // Two boxes are apart if along one axis one is below the other at the start and at the end: for what moves along
-// straight lines in common time keeps that in between.
+// straight lines in common time keeps that in between. One is below the other where its extent upward and the other's
+// downward have a negative sum; signs of sums are the same on all processors. No sum is -0: extents are rounded up, and
+// are never -0 themselves.
 
-/// A box, by its place in a block: numbers are kLanes apart.
-struct OneBox {
-  const float* low;
-  const float* high;
-};
-inline OneBox BoxAt(const BoxBlock* blocks, int index) {
-  const BoxBlock& block = blocks[index / kLanes];
-  return {block.low[0] + index % kLanes, block.high[0] + index % kLanes};
+/// The box at that place, whose extents are kLanes apart.
+inline const float* BoxAt(const BoxBlock* blocks, int index) {
+  return blocks[index / kLanes].extent[0] + index % kLanes;
 }
 
 /// Eight boxes, in registers.
@@ -19,80 +16,64 @@ class EightBoxes {
  public:
 #if defined(__AVX2__)
   explicit EightBoxes(const BoxBlock& block) {
-    for (int i = 0; i < 6; ++i) {
-      low_[i] = _mm256_load_ps(block.low[i]);
-      high_[i] = _mm256_load_ps(block.high[i]);
-    }
+    for (int i = 0; i < 12; ++i) extent_[i] = _mm256_load_ps(block.extent[i]);
   }
   /// A bit for each of them that is near.
-  unsigned Near(OneBox box) const {
-#if defined(__AVX512VL__)
-    // Signs of differences are as good as comparisons, and cheaper than masks.
-    __m256i apart = _mm256_setzero_si256();
-    for (int i = 0; i < 3; ++i) {
-      constexpr int kOrBothOthers = 0xf8;
-      apart = _mm256_ternarylogic_epi32(apart, Less(All(box.high, i), low_[i]), Less(All(box.high, i + 3), low_[i + 3]),
-                                        kOrBothOthers);
-      apart = _mm256_ternarylogic_epi32(apart, Less(high_[i], All(box.low, i)), Less(high_[i + 3], All(box.low, i + 3)),
-                                        kOrBothOthers);
-    }
-    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(apart))) ^ 0xff;
-#else
+  unsigned Near(const float* box) const {
     __m256 apart = _mm256_setzero_ps();
     for (int i = 0; i < 3; ++i) {
-      apart = _mm256_or_ps(apart, _mm256_and_ps(_mm256_cmp_ps(low_[i], All(box.high, i), _CMP_GT_OQ),
-                                                _mm256_cmp_ps(low_[i + 3], All(box.high, i + 3), _CMP_GT_OQ)));
-      apart = _mm256_or_ps(apart, _mm256_and_ps(_mm256_cmp_ps(high_[i], All(box.low, i), _CMP_LT_OQ),
-                                                _mm256_cmp_ps(high_[i + 3], All(box.low, i + 3), _CMP_LT_OQ)));
+      apart = OrBoth(apart, Sum(i, box, i + 6), Sum(i + 3, box, i + 9));
+      apart = OrBoth(apart, Sum(i + 6, box, i), Sum(i + 9, box, i + 3));
     }
     return static_cast<unsigned>(_mm256_movemask_ps(apart)) ^ 0xff;
-#endif
   }
 
  private:
-  static __m256 All(const float* from, int i) {
-    return _mm256_set1_ps(from[i * kLanes]);
+  __m256 Sum(int i, const float* box, int k) const {
+    return _mm256_add_ps(extent_[i], _mm256_set1_ps(box[k * kLanes]));
   }
-  /// The sign bit.
-  static __m256i Less(__m256 a, __m256 b) {
-    return _mm256_castps_si256(_mm256_sub_ps(a, b));
+  /// a | (b & c)
+  static __m256 OrBoth(__m256 a, __m256 b, __m256 c) {
+#if defined(__AVX512VL__)
+    return _mm256_castsi256_ps(
+        _mm256_ternarylogic_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b), _mm256_castps_si256(c), 0xf8));
+#else
+    return _mm256_or_ps(a, _mm256_and_ps(b, c));
+#endif
   }
-  __m256 low_[6], high_[6];
+  __m256 extent_[12];
 #elif defined(__SSE2__)
   explicit EightBoxes(const BoxBlock& block) : block_(block) {}
   /// A bit for each of them that is near.
-  unsigned Near(OneBox box) const {
+  unsigned Near(const float* box) const {
     unsigned apart[2];
     for (int half = 0; half < 2; ++half) {
-      __m128 sum = _mm_setzero_ps();
+      const auto sum = [&](int i, int k) {
+        return _mm_add_ps(_mm_load_ps(block_.extent[i] + 4 * half), _mm_set1_ps(box[k * kLanes]));
+      };
+      __m128 any = _mm_setzero_ps();
       for (int i = 0; i < 3; ++i) {
-        sum = _mm_or_ps(sum, _mm_and_ps(_mm_cmpgt_ps(_mm_load_ps(block_.low[i] + 4 * half), All(box.high, i)),
-                                        _mm_cmpgt_ps(_mm_load_ps(block_.low[i + 3] + 4 * half), All(box.high, i + 3))));
-        sum = _mm_or_ps(sum, _mm_and_ps(_mm_cmplt_ps(_mm_load_ps(block_.high[i] + 4 * half), All(box.low, i)),
-                                        _mm_cmplt_ps(_mm_load_ps(block_.high[i + 3] + 4 * half), All(box.low, i + 3))));
+        any = _mm_or_ps(any, _mm_and_ps(sum(i, i + 6), sum(i + 3, i + 9)));
+        any = _mm_or_ps(any, _mm_and_ps(sum(i + 6, i), sum(i + 9, i + 3)));
       }
-      apart[half] = static_cast<unsigned>(_mm_movemask_ps(sum));
+      apart[half] = static_cast<unsigned>(_mm_movemask_ps(any));
     }
     return (apart[0] | apart[1] << 4) ^ 0xff;
   }
 
  private:
-  static __m128 All(const float* from, int i) {
-    return _mm_set1_ps(from[i * kLanes]);
-  }
   const BoxBlock& block_;
 #else
   explicit EightBoxes(const BoxBlock& block) : block_(block) {}
   /// A bit for each of them that is near.
-  unsigned Near(OneBox box) const {
+  unsigned Near(const float* box) const {
     unsigned near = 0;
     for (int lane = 0; lane < kLanes; ++lane) {
+      const auto isBelow = [&](int i, int k) { return block_.extent[i][lane] + box[k * kLanes] < 0; };
       bool apart = false;
       for (int i = 0; i < 3; ++i) {
-        const float* high = box.high + i * kLanes;
-        const float* low = box.low + i * kLanes;
-        apart |= block_.low[i][lane] > high[0] && block_.low[i + 3][lane] > high[3 * kLanes];
-        apart |= block_.high[i][lane] < low[0] && block_.high[i + 3][lane] < low[3 * kLanes];
+        apart |= isBelow(i, i + 6) && isBelow(i + 3, i + 9);
+        apart |= isBelow(i + 6, i) && isBelow(i + 9, i + 3);
       }
       near |= (apart ? 0u : 1u) << lane;
     }

@@ -15,7 +15,7 @@ struct Chosen {
   int edges, all;
 
   /// Those near a box.
-  Chosen(const LeafItems& items, OneBox box) {
+  Chosen(const LeafItems& items, const float* box) {
     const int edgeBlocks = BlockCount(items.edges), blocks = edgeBlocks + BlockCount(items.triangles);
     int count = 0;
     edges = 0;

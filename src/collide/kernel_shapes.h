@@ -76,7 +76,7 @@ void LeafShapes(const LeafShapeArgs& a) {
       greatest = end > greatest ? end : greatest;
     }
     shape.error = a.greatestSlope[leaf] * GreatestError(a, leaf) + size * kShapeError;
-    shape.deviation = __builtin_sqrtf(greatest) / 2 + shape.error;
+    shape.deviation = Sqrt(Floats(greatest))[0] / 2 + shape.error;
     const int blocks = (count + kLanes - 1) / kLanes;
     for (int t = count; t < blocks * kLanes; ++t) {
       x[t] = x[0];

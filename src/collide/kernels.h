@@ -21,9 +21,10 @@ struct alignas(64) BoxRow {
   float low[2][4], high[2][4];  ///< x, y, z and nothing, at the start and at the end [m].
 };
 
-/// The boxes of eight things. An empty one has low = infinity and high = -infinity.
+/// The boxes of eight things: how far they go towards -x, -y, -z at the start, the same at the end, then towards x, y,
+/// z at the start and at the end [m]. Empty ones go to -infinity.
 struct alignas(64) BoxBlock {
-  float low[6][kLanes], high[6][kLanes];  ///< x, y, z at the start, x, y, z at the end [m].
+  float extent[12][kLanes];
 };
 
 struct RowArgs {
@@ -76,6 +77,7 @@ struct LeafShapeArgs {
   TriangleShapes* triangleShapes;  ///< Out.
 };
 
+/// Items of one kind.
 struct ItemBoxArgs {
   const std::int32_t* corners;
   int cornersPerItem;  ///< 1, 2 or 3.
@@ -109,7 +111,8 @@ struct LeafItems {
   const BoxBlock* vertexBoxes;    ///< Of its own.
 };
 
-/// Pairs of items of two leaves a and b, each by its number in its leaf. Behind `most` there is room for whole blocks.
+/// Pairs of items of two leaves a and b, each by its number in its leaf. Arrays have room for one block more than there
+/// can be.
 struct NearItems {
   static constexpr int kMostEdges = 48 * 48, kMostTriangles = 48 * 16;
   int edges = 0, vertexTriangle = 0, triangleVertex = 0;

@@ -21,8 +21,12 @@ namespace {
 
 constexpr int kChunkVertices = 1024;  // that one thread takes at a time
 constexpr int kLeastChunkBlocks = 2;  // of leaves, likewise
-constexpr int kMostChunks = 512;      // of blocks of leaves
-constexpr std::size_t kSamples = 63;
+constexpr int kMostChunks = 512;
+constexpr std::size_t kSamples = 63;  // for a median
+
+static_assert(NearItems::kMostEdges == 3 * Clusters::kLeafItems * 3 * Clusters::kLeafItems);
+static_assert(NearItems::kMostTriangles == 3 * Clusters::kLeafItems * Clusters::kLeafItems);
+static_assert(TriangleShapes::kBlocks * kLanes == 2 * Clusters::kLeafItems);
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -173,8 +177,7 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       vertexTriangle(chunks),
       edgeEdge(chunks) {
   BoxBlock empty;
-  std::fill_n(empty.low[0], 6 * kLanes, INFINITY);
-  std::fill_n(empty.high[0], 6 * kLanes, -INFINITY);
+  for (auto& extents : empty.extent) std::fill_n(extents, kLanes, -INFINITY);
   levels.emplace_back(Index(leafBlocks), empty);
   do {
     levels.emplace_back(Index(Blocks(static_cast<std::int64_t>(levels.back().size()))), empty);
@@ -356,6 +359,9 @@ PairFinder::~PairFinder() = default;
 
 void PairFinder::Find(const MeshMotion& motion, std::span<const double> reach, bool clothPairs) {
   Impl& s = *impl_;
+  assert(motion.start.size() == s.mesh.body.size() && motion.way.size() == s.mesh.body.size());
+  assert(motion.cut.empty() || motion.cut.size() == s.mesh.body.size());
+  assert(reach.size() >= Index(s.mesh.bodies()));
   s.vertexTriangle.Clear();
   s.edgeEdge.Clear();
   if (s.clusters.clothLeaves == 0) return;

@@ -26,8 +26,9 @@ struct MeshMotion {
 
 class PairFinder {
  public:
-  /// The mesh must outlive it.
+  /// The mesh must outlive it, and so must the executor.
   PairFinder(const ContactMesh& mesh, const Executor& executor);
+  /// With kernels other than the fastest, which find the same.
   PairFinder(const ContactMesh& mesh, const Executor& executor, const collide::Kernels& kernels);
   ~PairFinder();
 
@@ -38,8 +39,8 @@ class PairFinder {
   /// body [m].
   void Find(const MeshMotion& motion, std::span<const double> reach, bool clothPairs);
 
-  std::span<const VertexQuad> vertexTriangle() const;  ///< {vertex, a, b, c}
-  std::span<const VertexQuad> edgeEdge() const;        ///< {a, b, c, d}: edges ab and cd.
+  std::span<const VertexQuad> vertexTriangle() const;  ///< {vertex, a, b, c}: triangles as the mesh has them.
+  std::span<const VertexQuad> edgeEdge() const;        ///< {a, b, c, d}: edges ab and cd, as the mesh has them.
   std::size_t MemoryBytes() const;
 
  private:

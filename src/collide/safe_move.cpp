@@ -177,9 +177,9 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
     ++report.detections;
   }
   for (std::size_t v = 0; v < share.size(); ++v) {
-    const double wanted = Dot(way[v], way[v]), lost = 1 - share[v];
+    const double wanted = Length(way[v]), lost = 1 - share[v];
     report.wanted += wanted;
-    report.lost += wanted * lost * lost;
+    report.lost += wanted * lost;
     report.cut += lost > 0 ? 1 : 0;
   }
   return report;

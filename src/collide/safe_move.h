@@ -44,8 +44,8 @@ class ExemptPairs {
 struct SafeMoveReport {
   int detections = 0;         ///< Searches for pairs.
   std::int64_t cut = 0;        ///< Vertices that did not go all their way.
-  double lost = 0;             ///< Sum of the squared ways that were cut off [m^2].
-  double wanted = 0;           ///< Sum of the squared ways [m^2].
+  double lost = 0;            ///< Sum of what was cut off the ways [m].
+  double wanted = 0;          ///< Sum of the ways [m].
 };
 
 class SafeMove {

@@ -219,12 +219,13 @@ void FabricEngine::Minimise(int iterations) {
 
 void FabricEngine::Move() {
   const SafeMoveReport first = contact_->Move(position_, next_);
+  double lost = first.lost;
   if (static_cast<double>(first.cut) > kMostCut * static_cast<double>(position_.size())) {
     // What was met on the way has its plane now.
     position_ = next_;
     contact_->FindPlanes(begin_, position_, position_, free_, h_);
     Minimise(kMoreIterations);
-    contact_->Move(position_, next_);
+    lost = contact_->Move(position_, next_).lost;
   }
   std::swap(position_, next_);
   contact_->End(position_);
@@ -232,6 +233,8 @@ void FabricEngine::Move() {
     if (!contact.active) continue;
     ++(contact.key.kind == ContactKey::Kind::Shape ? counts_.colliderContacts : counts_.selfContacts);
   }
+  counts_.lostWay += lost;
+  counts_.wantedWay += first.wanted;
   counts_.intersections = contact_->tangled();
   counts_.squeezed = contact_->CountSqueezed(position_);
   YieldFolds();

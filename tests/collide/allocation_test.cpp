@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <vector>
+
 #include "collide/pair_finder.h"
 #include "core/executor.h"
 #include "tests/collide/contact_meshes.h"

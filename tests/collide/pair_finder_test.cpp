@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -22,12 +23,31 @@ namespace {
 constexpr double kSpacing = 0.01;           // m
 constexpr double kReach = 0.15 * kSpacing;  // of a body
 
+/// Whether pairs have the mesh's triangles and edges, their vertices in the same order.
+bool AreOfMesh(const ContactMesh& mesh, const PairFinder& finder) {
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<std::array<std::int32_t, 2>> edges;
+  for (const auto& [a, b, c] : mesh.triangles) triangles.push_back({a, b, c});
+  for (const auto& [a, b] : mesh.edges) edges.push_back({a, b});
+  std::sort(triangles.begin(), triangles.end());
+  std::sort(edges.begin(), edges.end());
+  const auto has = [](const auto& all, const auto& one) { return std::binary_search(all.begin(), all.end(), one); };
+  return std::all_of(finder.vertexTriangle().begin(), finder.vertexTriangle().end(),
+                     [&](const VertexQuad& q) {
+                       return has(triangles, std::array{q[1], q[2], q[3]});
+                     }) &&
+         std::all_of(finder.edgeEdge().begin(), finder.edgeEdge().end(), [&](const VertexQuad& q) {
+           return has(edges, std::array{q[0], q[1]}) && has(edges, std::array{q[2], q[3]});
+         });
+}
+
 /// What is wrong with what is found, or nothing. All that come within reach are, and none whose boxes are `slack` [m]
 /// farther apart at all times. `hidden`: counts pairs whose boxes come within reach, but that do not.
 std::string Fault(const MovingMesh& m, double slack = 1e-6, std::size_t* hidden = nullptr) {
   const Executor executor(1);
   PairFinder finder(m.mesh, executor);
   finder.Find(m.Motion(), m.reach, m.clothPairs);
+  if (!AreOfMesh(m.mesh, finder)) return "what the mesh does not have";
   const PairSet vertexTriangle = Sorted(finder.vertexTriangle()), edgeEdge = SortedEdges(finder.edgeEdge());
   for (const PairSet* set : {&vertexTriangle, &edgeEdge}) {
     if (std::adjacent_find(set->begin(), set->end()) != set->end()) return "a pair that is listed twice";
@@ -85,7 +105,7 @@ MovingMesh Sheet(int n, int shape) {
   if (shape == 1) SetShape(m, [&](const Vec3& p) { return Drape(p, width); });
   if (shape == 2) SetShape(m, [&](const Vec3& p) { return Layers(p, width, 4, 0.2 * kSpacing); });
   if (shape == 3) SetShape(m, [&](const Vec3& p) { return Layers(p, width, 16, 0.2 * kSpacing); });
-  if (shape == 4) SetShape(m, [&](const Vec3& p) { return p * 0.3 + RandomVector(random, 1.5 * kSpacing); });
+  if (shape == 4) SetShape(m, [&](const Vec3& p) { return p * 0.5 + RandomVector(random, kSpacing); });
   return m;
 }
 constexpr int kShapes = 5;
@@ -191,6 +211,23 @@ TEST_CASE("far from the origin") {
       for (Vec3& p : m.start) p += {away, -away, away / 3};
       CHECK(Fault(m, 1e-6) == "");
     }
+  }
+}
+
+TEST_CASE("what is just within reach is found, however coordinates round") {
+  SplitMix64 random(13);
+  for (int round = 0; round < 50; ++round) {
+    CAPTURE(round);
+    MovingMesh m;
+    AddSheet(m, 20, kSpacing, 0);  // most vertices, for what floats are relative to
+    for (int body = 1; body < 3; ++body) AddSheet(m, 6, kSpacing, kSpacing * random.NextUnit());
+    const Vec3 away = RandomVector(random, round < 25 ? 1 : 100), apart = RandomVector(random, 0.2);
+    for (std::size_t v = 0; v < m.start.size(); ++v) {
+      m.start[v] += away;
+      if (m.mesh.body[v] > 0) m.start[v] += apart + Vec3{0, 0, 2};
+      if (m.mesh.body[v] > 1) m.start[v].z += (m.reach[1] + m.reach[2]) * (1 - 1e-9);
+    }
+    CHECK(Fault(m) == "");
   }
 }
 
@@ -307,7 +344,7 @@ TEST_CASE("a flat sheet has hardly any pairs, however it lies, moves and turns a
 TEST_CASE("flat parts hide no pair that comes within reach, up to where their vertices are within reach") {
   SplitMix64 random(12);
   std::size_t hidden = 0;
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 120; ++round) {
     CAPTURE(round);
     MovingMesh m;
     const int n = 17;
@@ -316,9 +353,11 @@ TEST_CASE("flat parts hide no pair that comes within reach, up to where their ve
              [&](int i, int j) { return round % 3 == 0 && std::hypot(i - 5, j - 9) < 2; });
     const double radius = kSpacing * std::exp(4 * random.NextUnit()), squeeze = 0.3 + random.NextUnit();
     const double noise = kSpacing * std::pow(random.NextUnit(), 3), shear = random.NextUnit();
+    const bool isSparse = round % 5 < 2;  // noise: of few vertices
     SetShape(m, [&](const Vec3& p) {
       const Vec3 q = {p.x * squeeze + shear * p.y, p.y, 0};
-      return Vec3{radius * std::sin(q.x / radius), q.y, radius * std::cos(q.x / radius)} + RandomVector(random, noise);
+      const Vec3 onCylinder = {radius * std::sin(q.x / radius), q.y, radius * std::cos(q.x / radius)};
+      return onCylinder + RandomVector(random, !isSparse ? noise : random.NextUnit() < 0.03 ? kSpacing : 0);
     });
     Move(m, kSpacing * std::pow(random.NextUnit(), 3), static_cast<std::uint64_t>(round),
          RandomVector(random, 3 * kSpacing));
@@ -328,7 +367,7 @@ TEST_CASE("flat parts hide no pair that comes within reach, up to where their ve
     }
     REQUIRE(Fault(m, 1e-6, &hidden) == "");
   }
-  CHECK(hidden > 3000);
+  CHECK(hidden > 2000);
 }
 
 TEST_CASE("the sides of a slit that closes are found") {
