@@ -9,18 +9,21 @@ constexpr float kShapeError = 0x1p-16f;  // of a shape's size, likewise
 
 /// The most that a vertex of the leaf may be from the middles of its boxes.
 inline float GreatestError(const LeafShapeArgs& a, int leaf) {
-  Floats size(0), more(0);
-  for (int i = a.vertexFirst[leaf]; i < a.vertexFirst[leaf + 1]; ++i) {
-    const Row row = Row::Load(a.rows[a.vertices[i]]);
-    for (int end = 0; end < 2; ++end) size = Max(size, Max(Abs(row.low[end]), Abs(row.high[end])));
-    more = Max(more, (row.high[1] - row.low[1]) - (row.high[0] - row.low[0]));  // it may be cut
+  float size = 0, sum = 0;
+  const float* box = BoxAt(a.boxes, leaf);
+  for (int i = 0; i < 12; ++i) {
+    const float extent = box[i * kLanes] < 0 ? -box[i * kLanes] : box[i * kLanes];
+    size = extent > size ? extent : size;
   }
-  float greatest = 0, sum = 0;
-  for (int i = 0; i < 3; ++i) {
-    greatest = size[i] > greatest ? size[i] : greatest;
-    sum += more[i];
+  if (a.haveCuts) {
+    Floats more(0);
+    for (int i = a.vertexFirst[leaf]; i < a.vertexFirst[leaf + 1]; ++i) {
+      const Row row = Row::Load(a.rows[a.vertices[i]]);
+      more = Max(more, (row.high[1] - row.low[1]) - (row.high[0] - row.low[0]));
+    }
+    sum = more[0] + more[1] + more[2];
   }
-  return greatest * kRowError + sum;
+  return size * kRowError + sum;
 }
 
 /// From twice as large ones.

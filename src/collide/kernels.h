@@ -73,6 +73,8 @@ struct LeafShapeArgs {
   const float* inverse;        ///< As FlatRegions has it.
   const float* greatestSlope;  ///< As FlatRegions has it; leaves that have none are left out.
   const BoxRow* rows;
+  const BoxBlock* boxes;           ///< Of leaves.
+  bool haveCuts;                   ///< Whether any vertex may be cut.
   LeafShape* shapes;               ///< Out.
   TriangleShapes* triangleShapes;  ///< Out.
 };

@@ -118,7 +118,7 @@ struct PairFinder::Impl {
 
   void BoxVertices(const MeshMotion& motion, std::span<const double> reach);
   void BoxLeaves();
-  void ShapeLeaves(std::span<const double> reach);
+  void ShapeLeaves(std::span<const double> reach, bool haveCuts);
   void SearchLeaves(std::span<const double> reach, bool clothPairs);
   void BoxItems();
   void CompareItems();
@@ -227,7 +227,7 @@ void PairFinder::Impl::BoxLeaves() {
   }
 }
 
-void PairFinder::Impl::ShapeLeaves(std::span<const double> reach) {
+void PairFinder::Impl::ShapeLeaves(std::span<const double> reach, bool haveCuts) {
   ForBlocks([&](int begin, int end, int) {
     kernels.leafShapes({.begin = begin * kLanes,
                         .end = std::min(end * kLanes, clusters.clothLeaves),
@@ -238,6 +238,8 @@ void PairFinder::Impl::ShapeLeaves(std::span<const double> reach) {
                         .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
                         .greatestSlope = regions.greatestSlope.data(),
                         .rows = rows.data(),
+                        .boxes = levels[0].data(),
+                        .haveCuts = haveCuts,
                         .shapes = shapes.data(),
                         .triangleShapes = triangleShapes.data()});
   });
@@ -367,7 +369,7 @@ void PairFinder::Find(const MeshMotion& motion, std::span<const double> reach, b
   if (s.clusters.clothLeaves == 0) return;
   s.BoxVertices(motion, reach);
   s.BoxLeaves();
-  if (clothPairs) s.ShapeLeaves(reach);
+  if (clothPairs) s.ShapeLeaves(reach, !motion.cut.empty());
   s.SearchLeaves(reach, clothPairs);
   s.BoxItems();
   s.CompareItems();
