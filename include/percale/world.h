@@ -66,12 +66,12 @@ struct StepReport {
                                                    ///< of a start that was tangled; else none can be.
   std::int64_t squeezed = 0;                       ///< Engine::Fabric: vertices of cloth inside of solids, and of mesh
                                                    ///< colliders that cloth holds up.
-  double lostMotion = 0;                           ///< Engine::Fabric: share of the way of all vertices that was cut off
-                                                   ///< so that nothing passes through anything, of all steps.
-  int newtonIterations = 0;                        ///< Engine::Fabric: corrections, summed over the steps.
-  int linearIterations = 0;                        ///< Engine::Fabric: of the linear solver, summed over the steps.
-  double residual = 0;                             ///< Engine::Fabric: last correction over the first, worst step.
-  bool converged = true;                           ///< Engine::Fabric: all steps reached simulation.tolerance.
+  double lostMotion = 0;                 ///< Engine::Fabric: share of the way of all vertices that was cut off
+                                         ///< so that nothing passes through anything, of all steps.
+  int newtonIterations = 0;              ///< Engine::Fabric: corrections, summed over the steps.
+  int linearIterations = 0;              ///< Engine::Fabric: of the linear solver, summed over the steps.
+  double residual = 0;                   ///< Engine::Fabric: last correction over the first, worst step.
+  bool converged = true;                 ///< Engine::Fabric: all steps reached simulation.tolerance.
   bool atRest = false;                   ///< No point moved more than 1 mm over a frame, for 30 frames on end.
   std::optional<Divergence> divergence;  ///< Set: the state is the last good frame, stepping is over.
 };

@@ -180,6 +180,7 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
     const double wanted = Length(way[v]), lost = 1 - share[v];
     report.wanted += wanted;
     report.lost += wanted * lost;
+    report.worst = std::max(report.worst, wanted * lost);
     report.cut += lost > 0 ? 1 : 0;
   }
   return report;

@@ -42,10 +42,11 @@ class ExemptPairs {
 };
 
 struct SafeMoveReport {
-  int detections = 0;         ///< Searches for pairs.
-  std::int64_t cut = 0;        ///< Vertices that did not go all their way.
-  double lost = 0;            ///< Sum of what was cut off the ways [m].
-  double wanted = 0;          ///< Sum of the ways [m].
+  int detections = 0;    ///< Searches for pairs.
+  std::int64_t cut = 0;  ///< Vertices that did not go all their way.
+  double lost = 0;       ///< Sum of what was cut off the ways [m].
+  double worst = 0;      ///< The most that was cut off a way [m].
+  double wanted = 0;     ///< Sum of the ways [m].
 };
 
 class SafeMove {

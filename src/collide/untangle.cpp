@@ -78,8 +78,8 @@ void Untangler::Find(std::span<const Intersection> met, std::span<const Vec3> x,
     if (!(length > kNoWay)) continue;
     const double over = 1 / Dot(area, area);
     const double wq = Dot(Cross(place - p, r - p), area) * over, wr = Dot(Cross(q - p, place - p), area) * over;
-    tangles.push_back({s < 0.5 ? meeting.edge[0] : meeting.edge[1], {t.a, t.b, t.c}, {1 - wq - wr, wq, wr},
-                       way * (1 / length)});
+    tangles.push_back(
+        {s < 0.5 ? meeting.edge[0] : meeting.edge[1], {t.a, t.b, t.c}, {1 - wq - wr, wq, wr}, way * (1 / length)});
   }
 }
 

@@ -11,7 +11,8 @@
 
 namespace percale::fabric {
 
-/// What touches: four vertices and how they pair, or a vertex and the number of a shape. What is tangled is not remembered.
+/// What touches: four vertices and how they pair, or a vertex and the number of a shape. What is tangled is not
+/// remembered.
 struct ContactKey {
   enum class Kind : std::int32_t { VertexTriangle, EdgeEdge, Shape, Tangle };
   Kind kind = Kind::VertexTriangle;

@@ -106,6 +106,7 @@ void ContactStep::Configure(const Scene& scene) {
     surfaces_[c] = {.friction = cloth.friction};
     most = std::max(most, distances_.half[c]);
   }
+  distance_ = 2 * most;
   std::size_t body = meanEdges.size();
   for (const Obstacle& obstacle : obstacles_.all()) {
     const ColliderSettings& collider = scene.colliders[Index(obstacle.collider)];
@@ -224,6 +225,15 @@ SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end)
   listed_ = report.cut == 0 && moves_ == 0;
   ++moves_;
   return report;
+}
+
+void ContactStep::Shorten(std::span<const Vec3> now, std::span<Vec3> end, double share) {
+  for (std::size_t v = 0; v < now.size(); ++v) end[v] = now[v] + (end[v] - now[v]) * share;
+  for (std::size_t v = 0; v < obstacle_.size(); ++v) {
+    const Vec3& from = start_[now.size() + v];
+    obstacle_[v] = from + (obstacle_[v] - from) * share;
+  }
+  listed_ = false;
 }
 
 void ContactStep::End(std::span<const Vec3> y) {

@@ -2,6 +2,7 @@
 /// \file
 /// Contact in the steps of the engine: which planes the potential of a step has, and how far all may go at its end.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,6 +42,8 @@ class ContactStep {
                   std::span<const std::uint8_t> free, double h);
   /// From now on towards `end` as far as all can go: writes where to. Returns what it took.
   SafeMoveReport Move(std::span<const Vec3> now, std::span<Vec3> end);
+  /// After Move: takes all only that share of the way that they went, which is as safe.
+  void Shorten(std::span<const Vec3> now, std::span<Vec3> end, double share);
   /// The step has ended at y.
   void End(std::span<const Vec3> y);
 
@@ -58,6 +61,9 @@ class ContactStep {
   void ReadState(std::vector<Touch>& touches, std::vector<Vec3>& obstacles) const;
   /// The same, set, after a Restart; obstacles of another number are left where they are.
   void WriteState(std::span<const Touch> touches, std::span<const Vec3> obstacles);
+
+  /// The greatest distance of contact of cloth [m].
+  double distance() const { return distance_; }
 
   Contacts& contacts() { return contacts_; }
   const Contacts& contacts() const { return contacts_; }
@@ -84,10 +90,11 @@ class ContactStep {
   Untangler untangler_;
   std::vector<Intersection> met_;  // what is tangled
   std::vector<Tangle> tangles_;
-  bool judged_ = false;  // Whether that is known.
+  bool judged_ = false;                 // Whether that is known.
   std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid
-  bool listed_ = false;                 // What is near is known.
-  int moves_ = 0;                       // Of this step.
+  double distance_ = 0;
+  bool listed_ = false;  // What is near is known.
+  int moves_ = 0;        // Of this step.
 };
 
 }  // namespace percale::fabric

@@ -88,30 +88,40 @@ void Contacts::Clear() {
   memory_.Clear(0);
 }
 
-/// What resists a change of its gap by inertia alone [N/m]; 0 where all is pinned.
-double Contacts::Inertia(const Contact& c) const {
+/// What resists a change of its gap [N/m], if each vertex were alone: `ofVertex(v)` of each along the normal; 0 where
+/// all is pinned.
+template <class OfVertex>
+double Contacts::Resistance(const Contact& c, OfVertex&& ofVertex) const {
   double compliance = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     const std::int32_t v = c.vertex[k];
-    if (v >= 0 && step_.free[Index(v)]) compliance += c.weight[k] * c.weight[k] / step_.mass[Index(v)];
+    if (v >= 0 && step_.free[Index(v)]) compliance += c.weight[k] * c.weight[k] / ofVertex(v);
   }
-  return compliance > 0 ? 1 / (compliance * step_.h * step_.h) : 0;
+  return compliance > 0 ? 1 / compliance : 0;
+}
+
+/// Of a contact that begins. `approach`: how far beyond contact inertia alone would lead [m].
+void Contacts::Start(double gap, double reach, double approach, double counts, Contact& c) const {
+  c.gap = gap;
+  c.reach = reach;
+  c.counts = counts;
+  const double inertia = Resistance(c, [&](std::int32_t v) { return step_.mass[Index(v)] / (step_.h * step_.h); });
+  Fit(inertia * std::max(kStiffness, approach / (kStop * reach)), c);
 }
 
 /// The force is k (r - d) down to half the distance of contact r, and from there on grows as 1 / d^2; the parabola has
-/// that force and its slope at the gap. `approach`: how far beyond contact inertia alone would lead [m].
-void Contacts::Fit(double gap, double distance, double approach, Contact& c) const {
-  const double inertia = Inertia(c);
-  const double k = inertia * std::max(kStiffness, approach / (kStop * distance));
-  const double fit = std::clamp(gap, kLeastFit * distance, kMostFit * distance);
-  if (fit == kMostFit * distance) {
-    c.stiffness = k;
-    c.distance = distance;
+/// that force and its slope at the gap of the start.
+void Contacts::Fit(double k, Contact& c) {
+  c.base = k;
+  const double fit = std::clamp(c.gap, kLeastFit * c.reach, kMostFit * c.reach);
+  if (fit == kMostFit * c.reach) {
+    c.stiffness = c.counts * k;
+    c.distance = c.reach;
     return;
   }
-  const double share = 0.5 * distance / fit;
-  const double force = 0.5 * k * distance * share * share;
-  c.stiffness = 2 * force / fit;
+  const double share = 0.5 * c.reach / fit;
+  const double force = 0.5 * k * c.reach * share * share;
+  c.stiffness = c.counts * 2 * force / fit;
   c.distance = 1.5 * fit;
 }
 
@@ -190,8 +200,7 @@ void Contacts::AddPairs(PairKind kind, std::span<const NearPair> pairs) {
       const ContactSurface& b = step_.surfaces[Index(mesh_.body[Index(pair.vertex[3])])];
       double ahead = 0;
       for (std::size_t k = 0; k < 4; ++k) ahead += c.weight[k] * Dot(c.normal, x[k] + way[k]);
-      Fit(now.gap, pair.distance, pair.distance - ahead, c);
-      c.stiffness *= counts;
+      Start(now.gap, pair.distance, pair.distance - ahead, counts, c);
       if (!(c.stiffness > 0)) kept_[Index(p)] = 0;
       c.friction = FrictionOf(a, b);
       Remember(c);
@@ -218,7 +227,7 @@ void Contacts::AddTangles(std::span<const Tangle> tangles, const ContactDistance
     for (std::size_t k = 0; k < 3; ++k) put(k + 1, tangle.corner[k], -tangle.weight[k]);
     const double distance = distances.half[Index(mesh_.body[Index(tangle.vertex)])] +
                             distances.half[Index(mesh_.body[Index(tangle.corner[0])])];
-    Fit(distance, distance, distance, c);
+    Start(distance, distance, distance, 1, c);
     if (c.stiffness > 0) contacts_.push_back(c);
   }
 }
@@ -235,7 +244,7 @@ void Contacts::AddPlane(const ContactKey& key, std::int32_t vertex, double gap, 
   c.slideFrom = From<double>(step_.begin[Index(vertex)]) + point - pointBefore;
   const ContactSurface& own = step_.surfaces[Index(mesh_.body[Index(vertex)])];
   const Vec3 ahead = step_.start[Index(vertex)] + step_.way[Index(vertex)];
-  Fit(gap, distance, distance - Dot(normal, From<double>(ahead) - point), c);
+  Start(gap, distance, distance - Dot(normal, From<double>(ahead) - point), 1, c);
   c.friction = FrictionOf(own, surface);
   Remember(c);
 }
@@ -253,12 +262,22 @@ double Contacts::Energy(std::span<const Vec3> y) const {
   return energy;
 }
 
-double Contacts::Update(std::span<const Vec3> y) {
+double Contacts::Update(std::span<const Vec3> y, const SystemMatrix& matrix) {
   for (Contact& c : contacts_) {
     const Vector3<double> sum = Sum(c, y);
     const double depth = c.distance - Dot(c.normal, sum) - c.offset;
     c.held = first_ && c.force > 0;
     c.active = depth > 0 || c.held;
+    if (c.active) {
+      const Vector3<double>& n = c.normal;
+      const double k = kStiffness * Resistance(c, [&](std::int32_t v) {
+                         const Real* d = matrix.DiagonalBlock(v);
+                         return n.x * (d[0] * n.x + d[3] * n.y + d[6] * n.z) +
+                                n.y * (d[1] * n.x + d[4] * n.y + d[7] * n.z) +
+                                n.z * (d[2] * n.x + d[5] * n.y + d[8] * n.z);
+                       });
+      if (k > c.base) Fit(k, c);
+    }
     c.seen = (!first_ && c.seen) || c.active;
     // What presses is what pressed a step ago: where a contact begins, the first guess of it is far too great.
     if (!first_) c.force = c.active ? c.stiffness * depth : 0;

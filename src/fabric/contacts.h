@@ -31,7 +31,11 @@ struct Contact {
   std::array<double, 4> weight{};        ///< gap = normal · (sum of weights times positions) + offset
   Vector3<double> normal;                ///< A unit vector.
   double offset = 0;                     ///< [m]
-  double stiffness = 0;                  ///< [N/m]
+  double gap = 0;                        ///< As the step begins [m].
+  double reach = 0;                      ///< Gap below which there is contact [m].
+  double counts = 1;                     ///< For so much of a contact.
+  double base = 0;                       ///< Stiffness at half of `reach` and above [N/m].
+  double stiffness = 0;                  ///< Of the parabola [N/m].
   double distance = 0;                   ///< Gap below which the sides push each other [m].
   double friction = 0;                   ///< Coulomb's coefficient.
   Vector3<double> slideFrom;  ///< slide = what is tangential of sum of weights times positions - slideFrom [m]
@@ -72,8 +76,9 @@ class Contacts {
   /// What the planes cost at y [J]: of those that were active at the last Update.
   double Energy(std::span<const Vec3> y) const;
   /// Takes as active what costs energy at y, and friction as the forces there have it; in the first call of a step, as
-  /// those at the end of the last step. Returns the energy.
-  double Update(std::span<const Vec3> y);
+  /// those at the end of the last step. Returns the energy. `matrix`: the second derivative of all else, from which
+  /// follows how stiff contacts have to be.
+  double Update(std::span<const Vec3> y, const SystemMatrix& matrix);
   /// Of what is active.
   void AddGradient(std::span<const Vec3> y, std::span<Vec3> gradient) const;
   /// What they add to the second derivative.
@@ -90,8 +95,10 @@ class Contacts {
 
  private:
   double ShareOf(PairKind kind, const VertexQuad& vertex, const std::array<double, 4>& weight) const;
-  double Inertia(const Contact& contact) const;
-  void Fit(double gap, double distance, double approach, Contact& contact) const;
+  template <class OfVertex>
+  double Resistance(const Contact& contact, OfVertex&& ofVertex) const;
+  void Start(double gap, double reach, double approach, double counts, Contact& contact) const;
+  static void Fit(double k, Contact& contact);
   double FrictionOf(const ContactSurface& a, const ContactSurface& b) const;
   void Remember(Contact& contact);
 

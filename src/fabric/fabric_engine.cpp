@@ -15,10 +15,14 @@ namespace {
 constexpr double kBound = 1e6;
 /// Drag coefficient of a sheet along the wind (Hoerner 1965, "Fluid-dynamic drag", chapter 2).
 constexpr double kSkinDrag = 0.01;
-/// Where more than this share of all vertices had to stop on their way, the step goes on with what stopped them known,
-/// for so many more iterations.
-constexpr double kMostCut = 0.005;
+/// Where a vertex had to stop farther from where it was to go than contact reaches, the step goes on with what stopped
+/// it known, for so many more iterations, and so often.
 constexpr int kMoreIterations = 2;
+constexpr int kMostRounds = 4;
+/// What had to stop on its way may leave cloth with so many times the energy that it would have with all or none of the
+/// way; else all go less.
+constexpr double kMostTorn = 2;
+constexpr int kMostShortenings = 5;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -217,16 +221,35 @@ void FabricEngine::Minimise(int iterations) {
   counts_.converged = counts_.converged && result.converged;
 }
 
+/// The energy without that of contact.
+double FabricEngine::FreeEnergy(std::span<const Vec3> y) {
+  solver_.objective().SetContacts(nullptr);
+  const double energy = solver_.objective().Energy(y);
+  solver_.objective().SetContacts(&contact_->contacts());
+  return energy;
+}
+
+/// Towards next_ as far as all can go; where some had to stop and others not, only so far that cloth is not torn.
+SafeMoveReport FabricEngine::MoveSafely() {
+  const double most = kMostTorn * std::max(FreeEnergy(next_), FreeEnergy(position_));
+  const SafeMoveReport report = contact_->Move(position_, next_);
+  for (int halving = 0; report.cut > 0 && halving < kMostShortenings && FreeEnergy(next_) > most; ++halving)
+    contact_->Shorten(position_, next_, 0.5);
+  return report;
+}
+
 void FabricEngine::Move() {
-  const SafeMoveReport first = contact_->Move(position_, next_);
-  double lost = first.lost;
-  if (static_cast<double>(first.cut) > kMostCut * static_cast<double>(position_.size())) {
+  SafeMoveReport report = MoveSafely();
+  const double wanted = report.wanted;
+  for (int round = 1; round < kMostRounds && report.worst > contact_->distance(); ++round) {
     // What was met on the way has its plane now.
     position_ = next_;
     contact_->FindPlanes(begin_, position_, position_, free_, h_);
+    for (const Pin& pin : pins_.All()) next_[Index(pin.point)] = pin.target;
     Minimise(kMoreIterations);
-    lost = contact_->Move(position_, next_).lost;
+    report = MoveSafely();
   }
+  const double lost = report.lost;
   std::swap(position_, next_);
   contact_->End(position_);
   for (const Contact& contact : contact_->contacts().all()) {
@@ -234,7 +257,7 @@ void FabricEngine::Move() {
     ++(contact.key.kind == ContactKey::Kind::Shape ? counts_.colliderContacts : counts_.selfContacts);
   }
   counts_.lostWay += lost;
-  counts_.wantedWay += first.wanted;
+  counts_.wantedWay += wanted;
   counts_.intersections = contact_->tangled();
   counts_.squeezed = contact_->CountSqueezed(position_);
   YieldFolds();

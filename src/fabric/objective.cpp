@@ -250,15 +250,10 @@ void Objective::Gradient(std::span<const Vec3> y, std::span<Vec3> gradient) {
   EvaluateTriangles(y, false);
   PlateEnergy(y);
   Gather(y, gradient);
+  if (contacts_) contacts_->AddGradient(y, gradient);
 }
 
 double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix) {
-  double change = 0;
-  if (contacts_) {
-    const double before = contacts_->Energy(y);
-    change = contacts_->Update(y) - before;
-    matrix.SetExtra(contacts_->Terms(), executor_);
-  }
   EvaluateTriangles(y, true);
   Gather(y, gradient);
   const auto addToDiagonal = [&](int v, const Matrix3<double>& stiffness) {
@@ -281,6 +276,13 @@ double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gr
     for (int v = begin; v < end; ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);
   });
   for (const FabricTether& tether : model_.tethers) addToDiagonal(tether.vertex, Pull(tether, y).hessian);
+  double change = 0;
+  if (contacts_) {
+    const double before = contacts_->Energy(y);
+    change = contacts_->Update(y, matrix) - before;
+    matrix.SetExtra(contacts_->Terms(), executor_);
+    contacts_->AddGradient(y, gradient);
+  }
   matrix.Finish(executor_);
   return change;
 }
@@ -322,7 +324,6 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient) {
     gradient[Index(v)] = sum;
   });
   for (const FabricTether& tether : model_.tethers) gradient[Index(tether.vertex)] += ToVec3(Pull(tether, y).gradient);
-  if (contacts_) contacts_->AddGradient(y, gradient);
 }
 
 }  // namespace percale::fabric

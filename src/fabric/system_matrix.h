@@ -98,6 +98,7 @@ class SystemMatrix {
   Real* Block(std::int32_t index) { return &blocks_[9 * static_cast<std::size_t>(index)]; }
   const Real* Block(std::int32_t index) const { return &blocks_[9 * static_cast<std::size_t>(index)]; }
   Real* DiagonalBlock(int row) { return Block(diagonal_[static_cast<std::size_t>(row)]); }
+  const Real* DiagonalBlock(int row) const { return Block(diagonal_[static_cast<std::size_t>(row)]); }
   /// Per block what S has there: who writes all blocks himself adds it to their diagonals, and needs no Reset.
   std::span<const Real> constant() const { return constant_; }
   /// Sets E. Allocates only when there is more of it than ever before. Leaving it out keeps E.
