@@ -11,6 +11,8 @@ constexpr int kPairsPerChunk = 1024;
 constexpr int kHalveFrom = 10, kStopFrom = 25;
 /// Searches from which on every vertex counts as cut, so that no more is needed.
 constexpr int kMostSearches = 3;
+/// Then nothing goes farther than so many distances of contact.
+constexpr double kLongest = 20;
 /// Cloth is in contact with itself below this share of the distance that the pair has in the flat mesh.
 constexpr double kOwnShare = 0.35;
 
@@ -98,9 +100,9 @@ void SafeMove::ForPairs(Body&& body) {
   }
 }
 
-/// All pairs that might meet, and how they are at the start.
+/// All pairs that might meet on what is left of the ways, and how they are at the start.
 void SafeMove::Search(const Ways& ways, const ContactDistances& distances) {
-  finder_.Find({.start = ways.start, .way = ways.way, .cut = cut_}, distances.half, distances.clothPairs);
+  finder_.Find({.start = ways.start, .way = gone_, .cut = cut_}, distances.half, distances.clothPairs);
   for (std::size_t kind = 0; kind < 2; ++kind) {
     const std::span<const VertexQuad> found = kind == 0 ? finder_.vertexTriangle() : finder_.edgeEdge();
     pairs_[kind].list.resize(found.size());
@@ -150,8 +152,19 @@ std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
   return failed;
 }
 
+/// Lets all go only so far that their ways, each anywhere along its own, do not come near everything.
+void SafeMove::LimitWays(const Ways& ways, const ContactDistances& distances) {
+  double longest = 0, distance = 0;
+  for (std::size_t v = 0; v < ways.way.size(); ++v) longest = std::max(longest, Length(ways.way[v]) * ways.share[v]);
+  for (const double half : distances.half) distance = std::max(distance, 2 * half);
+  const double most = kLongest * distance;
+  if (longest <= most) return;
+  for (double& share : ways.share) share *= most / longest;
+}
+
 void SafeMove::List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances) {
   std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
+  gone_.assign(way.begin(), way.end());
   Search({start, way, {}}, distances);
 }
 
@@ -161,6 +174,7 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
   const Ways ways{start, way, share};
   std::fill(share.begin(), share.end(), 1.0);
   std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
+  gone_.assign(way.begin(), way.end());
   Search(ways, distances);
   ++report.detections;
   for (int sweep = 0; Cut(ways, sweep) > 0; ++sweep) {
@@ -172,7 +186,11 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
       more = true;
     }
     if (!more) continue;
-    if (report.detections + 1 >= kMostSearches) std::fill(cut_.begin(), cut_.end(), std::uint8_t{1});
+    if (report.detections + 1 >= kMostSearches) {
+      std::fill(cut_.begin(), cut_.end(), std::uint8_t{1});
+      LimitWays(ways, distances);
+    }
+    for (std::size_t v = 0; v < gone_.size(); ++v) gone_[v] = way[v] * share[v];
     Search(ways, distances);
     ++report.detections;
   }

@@ -88,6 +88,7 @@ class SafeMove {
   void Search(const Ways& ways, const ContactDistances& distances);
   template <class Body>
   void ForPairs(Body&& body);
+  void LimitWays(const Ways& ways, const ContactDistances& distances);
   std::int64_t Cut(const Ways& ways, int sweep);
 
   const ContactMesh& mesh_;
@@ -95,6 +96,7 @@ class SafeMove {
   PairFinder finder_;
   ExemptPairs exempt_;
   Pairs pairs_[2];                                  // by kind
+  std::vector<Vec3> gone_;                          // per vertex: what is left of its way
   std::vector<std::uint8_t> cut_, changed_, next_;  // per vertex
 };
 
