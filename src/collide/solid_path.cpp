@@ -50,8 +50,9 @@ SolidMeeting Meet(const SolidStep& step, const Vec3& x, const Vec3& y, double le
   const double share = inside ? 1 : ShareOf(step.start, a, b, floor);
   if (share == 1 && meeting.gap >= near) return meeting;
   meeting.any = true;
-  const Vec3 at = share < 1 ? Between(a, b, share) : a;
-  const SolidSample there = share < 1 ? DistanceTo(step.start.solid, at) : start;
+  // Where the way is free its end counts: on a solid that turns under it a point does not stay.
+  const Vec3 at = inside ? a : Between(a, b, share);
+  const SolidSample there = inside ? start : DistanceTo(step.start.solid, at);
   const Vec3 surface = at - there.normal * (there.distance - thickness);
   meeting.normal = Times(step.end.pose.rotation, there.normal);
   meeting.point = ToWorld(step.end.pose, surface);
