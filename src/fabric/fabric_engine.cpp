@@ -16,7 +16,7 @@ constexpr double kBound = 1e6;
 /// Drag coefficient of a sheet along the wind (Hoerner 1965, "Fluid-dynamic drag", chapter 2).
 constexpr double kSkinDrag = 0.01;
 /// Where more than this share of all vertices had to stop on their way, the step goes on with what stopped them known,
-/// for so many more iterations.
+/// for so many more iterations, or half as many as it had where that is more.
 constexpr double kMostCut = 0.005;
 constexpr int kMoreIterations = 2;
 
@@ -218,14 +218,17 @@ void FabricEngine::Minimise(int iterations) {
 }
 
 void FabricEngine::Move() {
+  previous_ = next_;
+  const std::vector<Vec3>& wanted = previous_;
   const SafeMoveReport first = contact_->Move(position_, next_);
   if (static_cast<double>(first.cut) > kMostCut * static_cast<double>(position_.size())) {
-    // What was met on the way has its plane now.
+    // What was met on the way has its plane now, and what would be met on the rest of it.
     position_ = next_;
-    contact_->FindPlanes(begin_, position_, position_, free_, h_);
-    Minimise(kMoreIterations);
+    contact_->FindPlanes(begin_, position_, wanted, free_, h_);
+    Minimise(std::max(kMoreIterations, scene_.simulation.newtonIterations / 2));
     contact_->Move(position_, next_);
   }
+  previous_ = begin_;
   std::swap(position_, next_);
   contact_->End(position_);
   for (const Contact& contact : contact_->contacts().all()) {
