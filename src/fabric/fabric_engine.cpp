@@ -291,6 +291,7 @@ void FabricEngine::WriteState(int cloth, std::span<const Vec3> positions, std::s
   std::copy(positions.begin(), positions.end(), predicted_.begin() + first);
   pins_.WriteAnchors(Index(cloth), anchors, time, [&](int v) { return position_[Index(v)]; });
   time_ = time;
+  contact_->Restart(scene_, time_);
 }
 
 void FabricEngine::ReadFolds(int cloth, std::vector<Fold>& folds) const {
