@@ -42,6 +42,8 @@ class ContactStep {
   SafeMoveReport Move(std::span<const Vec3> now, std::span<Vec3> end);
   /// The step has ended at y.
   void End(std::span<const Vec3> y);
+  /// Cloth was put elsewhere since then: what is near has to be found anew.
+  void ClothWasPut() { listed_ = false; }
 
   /// How many vertices of cloth are inside of solids, and how many of obstacles wait for cloth to make way: what is
   /// squeezed gives way to colliders, and they to it, but never cloth to cloth.

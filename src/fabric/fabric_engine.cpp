@@ -247,13 +247,16 @@ void FabricEngine::CollideBall(Ball& ball) {
     const Vec3& at(int v) const { return e.position_[Index(v)]; }
     void put(int v, const Vec3& x) { e.position_[Index(v)] = x; }
   };
-  counts_.colliderContacts += PushApart(ball, h_, Points{*this}, touched_);
+  const std::int64_t pushed = PushApart(ball, h_, Points{*this}, touched_);
+  if (pushed > 0) contact_->ClothWasPut();
+  counts_.colliderContacts += pushed;
 }
 
 void FabricEngine::Place(const Handle& handle) {
   const int first = model_.firstVertex[Index(handle.cloth)], end = model_.firstVertex[Index(handle.cloth) + 1];
   const int centre = first + handle.vertex;
   const Vec3 way = handle.target - position_[Index(centre)];
+  contact_->ClothWasPut();
   const auto shift = [&](int v, const Vec3& by) {
     position_[Index(v)] += by;
     previous_[Index(v)] += by;
