@@ -168,7 +168,8 @@ CaseResult VerifyCapstan(const Effort& effort) {
     drum.friction = friction;
     scene.colliders.push_back(drum);
     constexpr double kLong = 100;  // s
-    scene.colliderMotions.push_back({.end = kLong, .axis = {0, 0, -1}, .angle = kLong * kSpeed, .steady = true});
+    scene.colliderMotions.push_back(
+        {.end = kLong, .displacement = {}, .axis = {0, 0, -1}, .angle = kLong * kSpeed, .steady = true});
     World world(scene, {.threads = 1});
     const std::span<const Vec3> rest = world.Cloth(0).rest();
     const auto place = [&](int v) {
