@@ -131,8 +131,9 @@ void ExchangeList(Stream& stream, List& list) {
   std::uint64_t count = list.size();
   stream.Number(count);
   if constexpr (Stream::kReads) {
-    using Item = typename List::value_type;
-    if (!stream.Has(count <= kMostBytes ? count * sizeof(Item) : count)) return;
+    // So that no count makes a list larger than the file by much; the file has no padding, which an item may.
+    constexpr std::uint64_t kLeast = sizeof(typename List::value_type) / 2;
+    if (!stream.Has(count <= kMostBytes ? count * kLeast : count)) return;
     list.resize(count);
   }
   for (auto& item : list) Exchange(stream, item);

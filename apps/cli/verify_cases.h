@@ -46,7 +46,7 @@ struct CaseResult {
 
 struct VerifyCase {
   const char* name;     ///< As after --only: "cantilever".
-  const char* subject;  ///< "Bending", "Membrane", "Time", "Drape".
+  const char* subject;  ///< "Bending", "Membrane", "Time", "Contact", "Drape".
   const char* title;
   const char* law;     ///< What is expected, as a formula.
   const char* source;  ///< Where that is from.
@@ -77,6 +77,12 @@ CaseResult VerifyMomentum(const Effort& effort);
 CaseResult VerifyPendulum(const Effort& effort);
 CaseResult VerifyDecay(const Effort& effort);
 CaseResult VerifyOrder(const Effort& effort);
+// Contact
+CaseResult VerifyIncline(const Effort& effort);
+CaseResult VerifyCapstan(const Effort& effort);
+CaseResult VerifyStickSlip(const Effort& effort);
+CaseResult VerifyPinch(const Effort& effort);
+CaseResult VerifyImpact(const Effort& effort);
 // Drape
 CaseResult VerifyDrape(const Effort& effort);
 

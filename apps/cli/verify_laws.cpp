@@ -47,6 +47,43 @@ double Shoot(double gamma, double tip, std::vector<PlotPoint>* shape) {
   return state[0];
 }
 
+/// A strip on a table by the angle ψ at its lower end from the force that acts there: ψ'' = -q² sin ψ from that end on,
+/// which bears no moment. The clamp lies where the way from the end to it has the strip's own direction.
+PressedStrip PressStrip(double tip) {
+  struct Clamp {
+    double angle = 0, along = 0, across = 0;  // as seen from the force
+  };
+  std::vector<PlotPoint> way;
+  const auto shoot = [&](double q) {
+    constexpr int kFew = 400;
+    double psi = tip, turn = 0;
+    Clamp clamp;
+    way.assign(1, {});
+    const double ds = 1.0 / kFew;
+    for (int k = 0; k < kFew; ++k) {  // Störmer, Verlet: of second order, and the period of the pendulum hardly drifts
+      const double half = turn - 0.5 * ds * q * q * std::sin(psi);
+      const double middle = psi + 0.5 * ds * half;
+      clamp.along += ds * std::cos(middle), clamp.across += ds * std::sin(middle);
+      psi += ds * half;
+      turn = half - 0.5 * ds * q * q * std::sin(psi);
+      way.push_back({clamp.along, clamp.across});
+    }
+    clamp.angle = psi;
+    return clamp;
+  };
+  const auto off = [](const Clamp& c) { return c.along * std::sin(c.angle) - c.across * std::cos(c.angle); };
+  const double period = PendulumPeriod(tip);
+  const double q = Bisect(std::numbers::pi * period, 1.5 * std::numbers::pi * period,
+                          [&](double guess) { return off(shoot(guess)); });
+  const Clamp clamp = shoot(q);
+  const double c = std::cos(clamp.angle), s = std::sin(clamp.angle);
+  PressedStrip strip;
+  strip.shortening = 1 - (clamp.along * c + clamp.across * s);
+  strip.friction = std::abs(s / c);
+  for (const PlotPoint& p : way) strip.shape.push_back({p.y * c - p.x * s, p.x * c + p.y * s});
+  return strip;
+}
+
 }  // namespace
 
 HeavyElastica SolveHeavyElastica(double gamma) {
@@ -90,6 +127,11 @@ double PendulumPeriod(double angle) {
 double StripCompliance(double warp, double weft, double poisson, double shear, double angle) {
   const double cc = std::cos(angle) * std::cos(angle), ss = std::sin(angle) * std::sin(angle);
   return cc * cc / warp + cc * ss * (1 / shear - 2 * poisson / warp) + ss * ss / weft;
+}
+
+PressedStrip SolvePressedStrip(double shortening) {
+  assert(shortening > 0 && shortening <= 0.6);
+  return PressStrip(Bisect(1e-3, 1.8, [&](double tip) { return PressStrip(tip).shortening - shortening; }));
 }
 
 }  // namespace percale::cli

@@ -27,6 +27,17 @@ double CatenarySag(double length);
 /// arithmetic-geometric mean of 1 and cos(angle/2) (Gauss 1799).
 double PendulumPeriod(double angle);
 
+/// A strip without weight that hangs from a clamp straight down to a table, which rises under it until the strip folds:
+/// the elastica clamped at one end, hinged at the other, its ends above each other (Sano, Yamaguchi, Wada 2017, "Slip
+/// morphology of elastic strips on frictional rigid substrates"). Lengths in units of L.
+struct PressedStrip {
+  double shortening = 0;         ///< ε: how far the table has risen.
+  double friction = 0;           ///< Of the end on the table: force along it over force across. Less of it lets go.
+  std::vector<PlotPoint> shape;  ///< From the end on the table: sideways, up.
+};
+/// 0 < shortening <= 0.6.
+PressedStrip SolvePressedStrip(double shortening);
+
 /// 1/K of a strip cut at `angle` [rad] from the warp, from what strips along warp and weft measure (Jones 1999,
 /// "Mechanics of composite materials", equation 2.97).
 double StripCompliance(double warp, double weft, double poisson, double shear, double angle);

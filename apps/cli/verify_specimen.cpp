@@ -90,11 +90,11 @@ bool Settle(World& world, double move, int most) {
   return false;
 }
 
-void Put(World& world, const std::function<Vec3(int)>& place, const std::function<Vec3(int)>& velocity) {
+void Put(World& world, const std::function<Vec3(int)>& place, const std::function<Vec3(int)>& velocity, int index) {
   WorldState state;
   world.Save(state);
-  WorldState::Cloth& cloth = state.cloths[0];
-  const ClothView view = world.Cloth(0);
+  WorldState::Cloth& cloth = state.cloths[static_cast<std::size_t>(index)];
+  const ClothView view = world.Cloth(index);
   for (std::size_t v = 0; v < cloth.positions.size(); ++v) {
     const int vertex = static_cast<int>(v);
     cloth.positions[v] = place(vertex);
@@ -104,6 +104,15 @@ void Put(World& world, const std::function<Vec3(int)>& place, const std::functio
     cloth.anchors[k] = cloth.positions[static_cast<std::size_t>(view.pinned()[k])];
   }
   world.Restore(state);
+}
+
+std::vector<double> Masses(const ClothView& cloth, const ClothSettings& settings) {
+  std::vector<double> masses(cloth.positions().size());
+  const double triangle = settings.density * settings.width * settings.height / double(cloth.triangles().size());
+  for (const Triangle& t : cloth.triangles()) {
+    for (const std::int32_t v : {t.a, t.b, t.c}) masses[static_cast<std::size_t>(v)] += triangle / 3;
+  }
+  return masses;
 }
 
 MeshRun::MeshRun(Scene scene, RestMesh mesh, const std::vector<std::int32_t>& pinned)
@@ -119,6 +128,7 @@ void MeshRun::Step() {
   engine_.MoveColliders(time_);
   engine_.ApplyForces(time_, {}, {});
   engine_.Solve();
+  engine_.Move();
   engine_.ReadState(0, positions_, previous_);
   greatestMove_ = 0;
   for (std::size_t v = 0; v < positions_.size(); ++v) {

@@ -53,7 +53,11 @@ int Elements(double count, int least = 1);
 bool Settle(World& world, double move = 1e-9, int most = 200);
 
 /// Puts the cloth where `place` takes each vertex, pins included, with the velocity that `velocity` says there.
-void Put(World& world, const std::function<Vec3(int vertex)>& place, const std::function<Vec3(int vertex)>& velocity);
+void Put(World& world, const std::function<Vec3(int vertex)>& place, const std::function<Vec3(int vertex)>& velocity,
+         int cloth = 0);
+
+/// Masses of a grid's vertices: a third of each triangle at each corner [kg].
+std::vector<double> Masses(const ClothView& cloth, const ClothSettings& settings);
 
 /// One cloth of any mesh, stepped as World steps grids.
 class MeshRun {

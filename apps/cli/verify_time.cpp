@@ -37,16 +37,6 @@ double Farthest(std::span<const Vec3> a, std::span<const Vec3> b) {
   return most;
 }
 
-/// Masses of a grid's vertices: a third of each triangle at each corner [kg].
-std::vector<double> Masses(const ClothView& cloth, const ClothSettings& settings) {
-  std::vector<double> masses(cloth.positions().size());
-  const double triangle = settings.density * settings.width * settings.height / double(cloth.triangles().size());
-  for (const Triangle& t : cloth.triangles()) {
-    for (const std::int32_t v : {t.a, t.b, t.c}) masses[std::size_t(v)] += triangle / 3;
-  }
-  return masses;
-}
-
 }  // namespace
 
 CaseResult VerifyFreeMotion(const Effort& effort) {

@@ -6,7 +6,7 @@
 namespace percale {
 namespace {
 
-constexpr int kMostAdvances = 40;
+constexpr int kMostAdvances = 80;
 /// An advance that leaves this share of the way to the floor is close enough.
 constexpr double kClose = 0.05;
 /// Takes rounding off what may be advanced.

@@ -9,6 +9,8 @@ namespace {
 constexpr int kMostAdvances = 48;
 /// What is nearer to the least distance than this share of it is there, or the last advances would take for ever.
 constexpr double kClose = 0.02;
+/// A straight way along a round solid comes nearer to it than its ends: so much of the least distance may go.
+constexpr double kDip = 0.5;
 /// Takes rounding off what may be advanced.
 constexpr double kSafe = 1 - 1e-9;
 
@@ -47,11 +49,12 @@ SolidMeeting Meet(const SolidStep& step, const Vec3& x, const Vec3& y, double le
   const double floor = std::min(least, 0.999 * meeting.gap);
   const bool inside = !(meeting.gap > 0);
   if (!inside && meeting.gap > std::max(near, Length(b - a) + least)) return meeting;
-  const double share = inside ? 1 : ShareOf(step.start, a, b, floor);
+  const double share = inside ? 1 : ShareOf(step.start, a, b, kDip * floor);
   if (share == 1 && meeting.gap >= near) return meeting;
   meeting.any = true;
-  const Vec3 at = share < 1 ? Between(a, b, share) : a;
-  const SolidSample there = share < 1 ? DistanceTo(step.start.solid, at) : start;
+  // Where the way is free its end counts: on a solid that turns under it a point does not stay.
+  const Vec3 at = inside ? a : Between(a, b, share);
+  const SolidSample there = inside ? start : DistanceTo(step.start.solid, at);
   const Vec3 surface = at - there.normal * (there.distance - thickness);
   meeting.normal = Times(step.end.pose.rotation, there.normal);
   meeting.point = ToWorld(step.end.pose, surface);
@@ -70,9 +73,12 @@ Vec3 Outside(const SolidStep& step, const Vec3& x, const Vec3& y, double least) 
   const double missing = (1 + kClose) * floor - (end.distance - thickness);
   const bool off = missing > 0;
   if (off) b += end.normal * missing;
-  const double share = ShareOf(step.start, a, b, floor);
-  if (!off && share == 1) return y;
-  return ToWorld(step.end.pose, Between(a, b, share));
+  const double share = ShareOf(step.start, a, b, kDip * floor);
+  if (share == 1) return off ? ToWorld(step.end.pose, b) : y;
+  // What is left of the way goes along the plane that touches there.
+  const Vec3 at = Between(a, b, share), normal = DistanceTo(step.start.solid, at).normal;
+  const Vec3 along = b - normal * std::min(Dot(b - at, normal), 0.0);
+  return ToWorld(step.end.pose, Between(at, along, ShareOf(step.start, at, along, kDip * floor)));
 }
 
 }  // namespace percale

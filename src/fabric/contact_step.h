@@ -46,6 +46,7 @@ class ContactStep {
   void Shorten(std::span<const Vec3> now, std::span<Vec3> end, double share);
   /// The step has ended at y.
   void End(std::span<const Vec3> y);
+  /// Cloth was put elsewhere since then: what is near has to be found anew.
 
   /// Between two steps: from now towards `end` as far as all can go, colliders at rest.
   void MoveAside(std::span<const Vec3> now, std::span<Vec3> end);

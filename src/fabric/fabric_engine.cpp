@@ -16,7 +16,7 @@ constexpr double kBound = 1e6;
 /// Drag coefficient of a sheet along the wind (Hoerner 1965, "Fluid-dynamic drag", chapter 2).
 constexpr double kSkinDrag = 0.01;
 /// Where a vertex had to stop farther from where it was to go than contact reaches, the step goes on with what stopped
-/// it known, for so many more iterations, and so often.
+/// it known, for so many more iterations or half as many as it had, whichever is more, and so often.
 constexpr int kMoreIterations = 2;
 constexpr int kMostRounds = 4;
 /// What had to stop on its way may leave cloth with so many times the energy that it would have with all or none of the
@@ -239,17 +239,20 @@ SafeMoveReport FabricEngine::MoveSafely() {
 }
 
 void FabricEngine::Move() {
+  previous_ = next_;
+  const std::vector<Vec3>& ahead = previous_;
   SafeMoveReport report = MoveSafely();
   const double wanted = report.wanted;
   for (int round = 1; round < kMostRounds && report.worst > contact_->distance(); ++round) {
-    // What was met on the way has its plane now.
+    // What was met on the way has its plane now, and what would be met on the rest of it.
     position_ = next_;
-    contact_->FindPlanes(begin_, position_, position_, free_, h_);
+    contact_->FindPlanes(begin_, position_, ahead, free_, h_);
     for (const Pin& pin : pins_.All()) next_[Index(pin.point)] = pin.target;
-    Minimise(kMoreIterations);
+    Minimise(std::max(kMoreIterations, scene_.simulation.newtonIterations / 2));
     report = MoveSafely();
   }
   const double lost = report.lost;
+  previous_ = begin_;
   std::swap(position_, next_);
   contact_->End(position_);
   for (const Contact& contact : contact_->contacts().all()) {
@@ -321,6 +324,7 @@ void FabricEngine::WriteState(int cloth, std::span<const Vec3> positions, std::s
   std::copy(positions.begin(), positions.end(), predicted_.begin() + first);
   pins_.WriteAnchors(Index(cloth), anchors, time, [&](int v) { return position_[Index(v)]; });
   time_ = time;
+  contact_->Restart(scene_, time_);
 }
 
 void FabricEngine::ReadFolds(int cloth, std::vector<Fold>& folds) const {

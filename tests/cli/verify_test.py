@@ -58,6 +58,12 @@ class Verify(ProgramTest):
         self.run_program("verify", "--only", "cantilever")
         self.assertIn("<svg", (self.folder / "verify/verify.html").read_text(encoding="utf-8"))
 
+    def test_contact(self):
+        done = self.run_program("verify", "--only", "capstan,impact", "--json")
+        data = json.loads(done.stdout)
+        self.assertEqual((data["readings"], data["holding"]), (8, 8))
+        self.assertEqual((self.folder / "verify/verify.html").read_text(encoding="utf-8").count("<svg"), 3)
+
     def test_progress(self):
         done = self.run_program("verify", "--only", FAST, "--progress", "json")
         last = json.loads(done.stderr.splitlines()[-1])
@@ -95,7 +101,7 @@ class Verify(ProgramTest):
 
     def test_help_lists_the_cases(self):
         done = self.run_program("verify", "--help")
-        for name in ("cantilever", "catenary", "drape", "--fine", "--only"):
+        for name in ("cantilever", "catenary", "capstan", "drape", "--fine", "--only"):
             self.assertIn(name, done.stdout)
 
     @unittest.skipUnless(sys.platform.startswith("linux"), "sends a signal")

@@ -70,6 +70,15 @@ TEST_CASE("a heavy strip bends as published") {
 TEST_CASE("the other closed forms agree with published values") {
   const double sags[][2] = {{1.05, .139304}, {1.1, .200301}, {1.2, .292344}, {1.5, .502633}, {2, .796388}};
   for (const auto& [length, sag] : sags) CHECK(CatenarySag(length) == doctest::Approx(sag).epsilon(4e-6));
+  // A strip pressed into a fold; ε is how far, then the friction that holds its end.
+  const double holds[][2] = {{.05, .1035}, {.1, .1528}, {.2, .2378}, {.3, .3265}, {.4, .4344}};
+  for (const auto& [shortening, friction] : holds) {
+    const PressedStrip strip = SolvePressedStrip(shortening);
+    CHECK(strip.shortening == doctest::Approx(shortening).epsilon(1e-6));
+    CHECK(strip.friction == doctest::Approx(friction).epsilon(5e-4));
+    CHECK(std::abs(strip.shape.back().x) < 1e-6);
+    CHECK(strip.shape.back().y == doctest::Approx(1 - shortening).epsilon(1e-6));
+  }
   CHECK(PendulumPeriod(std::numbers::pi / 4) == doctest::Approx(1.039973).epsilon(1e-6));
   CHECK(PendulumPeriod(std::numbers::pi / 2) == doctest::Approx(1.180341).epsilon(1e-6));
   CHECK(1 / StripCompliance(400, 200, .2, 80, 0) == doctest::Approx(400));
