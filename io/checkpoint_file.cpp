@@ -123,7 +123,7 @@ template <class Stream, class T>
 void Exchange(Stream& stream, T& touch) requires std::is_same_v<std::remove_const_t<T>, Touch> {
   stream.Number(touch.kind);
   for (auto& number : touch.number) stream.Number(number);
-  Exchange(stream, touch.slide);
+  Exchange(stream, touch.hold);
   stream.Number(touch.force);
 }
 template <class Stream, class List>
@@ -203,7 +203,7 @@ std::string Impossible(const WorldState& state) {
     sizes.push_back(points);
   }
   for (const Touch& touch : state.touches) {
-    if (touch.kind < 0 || touch.kind > 2 || !IsFinite(touch.slide) || !std::isfinite(touch.force) || touch.force < 0)
+    if (touch.kind < 0 || touch.kind > 2 || !IsFinite(touch.hold) || !std::isfinite(touch.force) || touch.force < 0)
       return "a contact is none";
   }
   if (!AllFinite(state.obstacles)) return "a collider has a position that is no number";

@@ -25,12 +25,12 @@ struct Fold {
   friend bool operator==(const Fold&, const Fold&) = default;
 };
 
-/// Two things in contact at the end of a step, and how friction between them is strained.
+/// Two things in contact at the end of a step, and how strongly they hold each other.
 struct Touch {
   std::int32_t kind = 0;                 ///< 0: a vertex and a triangle; 1: two edges; 2: a vertex and a solid.
   std::array<std::int32_t, 4> number{};  ///< Their vertices, of all cloths and then of obstacles; or the vertex and the
                                          ///< number of the solid.
-  Vec3 slide;                            ///< Way along each other that friction springs back from [m].
+  Vec3 hold;                             ///< Force of friction on the first [N].
   double force = 0;                      ///< That presses them together [N].
   friend bool operator==(const Touch&, const Touch&) = default;
 };

@@ -12,7 +12,7 @@ constexpr int kHalveFrom = 10, kStopFrom = 25;
 /// Searches from which on every vertex counts as cut, so that no more is needed.
 constexpr int kMostSearches = 3;
 /// Then nothing goes farther than so many distances of contact.
-constexpr double kLongest = 20;
+constexpr double kLongest = 60;
 /// Cloth is in contact with itself below this share of the distance that the pair has in the flat mesh.
 constexpr double kOwnShare = 0.35;
 
@@ -69,6 +69,7 @@ bool ExemptPairs::Has(PairKind kind, const VertexQuad& quad) const {
 SafeMove::SafeMove(const ContactMesh& mesh, const Executor& executor)
     : mesh_(mesh), executor_(executor), finder_(mesh, executor) {
   for (std::vector<std::uint8_t>* flags : {&cut_, &changed_, &next_}) flags->resize(Index(mesh.vertices()));
+  least_.resize(Index(mesh.vertices()));
 }
 
 void SafeMove::Clear() {
@@ -100,7 +101,7 @@ void SafeMove::ForPairs(Body&& body) {
   }
 }
 
-/// All pairs that might meet on what is left of the ways, and how they are at the start.
+/// All pairs that might meet, and how they are at the start.
 void SafeMove::Search(const Ways& ways, const ContactDistances& distances) {
   finder_.Find({.start = ways.start, .way = gone_, .cut = cut_}, distances.half, distances.clothPairs);
   for (std::size_t kind = 0; kind < 2; ++kind) {
@@ -131,6 +132,7 @@ std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
   });
   std::int64_t failed = 0;
   std::fill(next_.begin(), next_.end(), std::uint8_t{0});
+  std::fill(least_.begin(), least_.end(), 1.0);
   for (const Pairs& pairs : pairs_) {
     for (std::size_t p = 0; p < pairs.list.size(); ++p) {
       double share = pairs.share[p];
@@ -143,11 +145,12 @@ std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
       for (const std::int32_t v : pairs.list[p].vertex) {
         const Vec3& way = ways.way[Index(v)];
         if (Dot(way, way) == 0) continue;
-        ways.share[Index(v)] *= share;
+        least_[Index(v)] = std::min(least_[Index(v)], share);
         next_[Index(v)] = 1;
       }
     }
   }
+  for (std::size_t v = 0; v < least_.size(); ++v) ways.share[v] *= least_[v];
   std::swap(changed_, next_);
   return failed;
 }
@@ -159,7 +162,10 @@ void SafeMove::LimitWays(const Ways& ways, const ContactDistances& distances) {
   for (const double half : distances.half) distance = std::max(distance, 2 * half);
   const double most = kLongest * distance;
   if (longest <= most) return;
-  for (double& share : ways.share) share *= most / longest;
+  for (std::size_t v = 0; v < ways.way.size(); ++v) {
+    ways.share[v] *= most / longest;
+    gone_[v] = ways.way[v] * ways.share[v];
+  }
 }
 
 void SafeMove::List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances) {
@@ -190,7 +196,6 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
       std::fill(cut_.begin(), cut_.end(), std::uint8_t{1});
       LimitWays(ways, distances);
     }
-    for (std::size_t v = 0; v < gone_.size(); ++v) gone_[v] = way[v] * share[v];
     Search(ways, distances);
     ++report.detections;
   }

@@ -96,7 +96,8 @@ class SafeMove {
   PairFinder finder_;
   ExemptPairs exempt_;
   Pairs pairs_[2];                                  // by kind
-  std::vector<Vec3> gone_;                          // per vertex: what is left of its way
+  std::vector<Vec3> gone_;                          // per vertex: the way that it may go
+  std::vector<double> least_;                       // per vertex: of the pairs that fail in a sweep
   std::vector<std::uint8_t> cut_, changed_, next_;  // per vertex
 };
 

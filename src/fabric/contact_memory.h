@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What a contact leaves behind for the next step: how far it is strained, and how strongly it pressed.
+/// What a contact leaves behind for the next step: how strongly it pressed, and held.
 
 #include <array>
 #include <cstddef>
@@ -21,8 +21,8 @@ struct ContactKey {
 };
 
 struct Stick {
-  Vector3<double> slide;  ///< Of the spring of friction [m].
-  double force = 0;       ///< Normal to the contact [N].
+  Vector3<double> hold;  ///< Force of friction [N].
+  double force = 0;      ///< Normal to the contact [N].
 };
 
 /// A hash table by linear probing (Knuth, TAOCP 3, section 6.4, algorithm L). Grows, and never shrinks.

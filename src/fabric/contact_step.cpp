@@ -155,7 +155,7 @@ void ContactStep::Begin(std::span<const Vec3> previous, std::span<const Vec3> st
 }
 
 void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> now, std::span<const Vec3> ahead,
-                             std::span<const std::uint8_t> free, double h) {
+                             std::span<const std::uint8_t> free, double h, bool firm) {
   const std::size_t cloth = now.size();
   for (std::size_t v = 0; v < cloth; ++v) {
     begin_[v] = begin[v];
@@ -172,6 +172,7 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
                    .free = free,
                    .mass = model_.mass,
                    .h = h,
+                   .firm = firm,
                    .surfaces = surfaces_});
   contacts_.AddPairs(PairKind::VertexTriangle, safeMove_.vertexTriangle());
   contacts_.AddPairs(PairKind::EdgeEdge, safeMove_.edgeEdge());
@@ -225,15 +226,6 @@ SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end)
   listed_ = report.cut == 0 && moves_ == 0;
   ++moves_;
   return report;
-}
-
-void ContactStep::Shorten(std::span<const Vec3> now, std::span<Vec3> end, double share) {
-  for (std::size_t v = 0; v < now.size(); ++v) end[v] = now[v] + (end[v] - now[v]) * share;
-  for (std::size_t v = 0; v < obstacle_.size(); ++v) {
-    const Vec3& from = start_[now.size() + v];
-    obstacle_[v] = from + (obstacle_[v] - from) * share;
-  }
-  listed_ = false;
 }
 
 void ContactStep::End(std::span<const Vec3> y) {

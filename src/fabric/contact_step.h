@@ -36,17 +36,14 @@ class ContactStep {
   void MoveColliders(const Scene& scene, double time);
   /// Learns what is near: cloth came from `previous` to `start` in the last step.
   void Begin(std::span<const Vec3> previous, std::span<const Vec3> start);
-  /// Planes for cloth that is at `now` and that inertia would lead to `ahead`. `begin`: where the step began, which is
-  /// before that in a second round.
+  /// `firm`: they do not give way to the tension in cloth. Planes for cloth that is at `now` and that inertia would
+  /// lead to `ahead`. `begin`: where the step began, which is before that in a second round.
   void FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> now, std::span<const Vec3> ahead,
-                  std::span<const std::uint8_t> free, double h);
+                  std::span<const std::uint8_t> free, double h, bool firm = false);
   /// From now on towards `end` as far as all can go: writes where to. Returns what it took.
   SafeMoveReport Move(std::span<const Vec3> now, std::span<Vec3> end);
-  /// After Move: takes all only that share of the way that they went, which is as safe.
-  void Shorten(std::span<const Vec3> now, std::span<Vec3> end, double share);
   /// The step has ended at y.
   void End(std::span<const Vec3> y);
-  /// Cloth was put elsewhere since then: what is near has to be found anew.
 
   /// Between two steps: from now towards `end` as far as all can go, colliders at rest.
   void MoveAside(std::span<const Vec3> now, std::span<Vec3> end);

@@ -27,6 +27,19 @@ Vector3<double> Tangential(const Vector3<double>& v, const Vector3<double>& norm
   return v - normal * Dot(v, normal);
 }
 
+/// About the least eigenvalue of a symmetric block, positive definite: one over the sum of one over each, which is a
+/// third of it at least. Of a vertex in cloth that is across the cloth, and is its inertia and the tension in it.
+double Softest(const Real* block) {
+  const double a = block[0], b = block[4], c = block[8], d = block[1], e = block[2], f = block[5];
+  const double xx = b * c - f * f, yy = a * c - e * e, zz = a * b - d * d;
+  return (a * xx - d * (d * c - e * f) + e * (d * f - b * e)) / (xx + yy + zz);
+}
+
+/// How the spring of friction is strained, where `sum` is that of weights times positions.
+Vector3<double> Slide(const Contact& c, const Vector3<double>& sum) {
+  return Tangential(sum - c.slideFrom, c.normal) + c.hold * (1 / c.stiffness);
+}
+
 /// Sum of weights times positions, of cloth.
 Vector3<double> Sum(const Contact& c, std::span<const Vec3> y) {
   Vector3<double> sum;
@@ -128,7 +141,7 @@ void Contacts::Fit(double k, Contact& c) {
 void Contacts::ReadMemory(std::vector<Touch>& touches) const {
   touches.clear();
   memory_.ForAll([&](const ContactKey& key, const Stick& stick) {
-    touches.push_back({static_cast<std::int32_t>(key.kind), key.number, ToVec3(stick.slide), stick.force});
+    touches.push_back({static_cast<std::int32_t>(key.kind), key.number, ToVec3(stick.hold), stick.force});
   });
   std::sort(touches.begin(), touches.end(),
             [](const Touch& a, const Touch& b) { return a.kind != b.kind ? a.kind < b.kind : a.number < b.number; });
@@ -137,7 +150,7 @@ void Contacts::ReadMemory(std::vector<Touch>& touches) const {
 void Contacts::WriteMemory(std::span<const Touch> touches) {
   memory_.Clear(touches.size());
   for (const Touch& touch : touches) {
-    memory_.Put({static_cast<ContactKey::Kind>(touch.kind), touch.number}, {From<double>(touch.slide), touch.force});
+    memory_.Put({static_cast<ContactKey::Kind>(touch.kind), touch.number}, {From<double>(touch.hold), touch.force});
   }
 }
 
@@ -151,7 +164,7 @@ double Contacts::FrictionOf(const ContactSurface& a, const ContactSurface& b) co
 void Contacts::Remember(Contact& contact) {
   const Stick* stick = memory_.Find(contact.key);
   if (stick == nullptr) return;
-  contact.slideFrom -= Tangential(stick->slide, contact.normal);
+  contact.hold = Tangential(stick->hold, contact.normal);
   contact.force = stick->force;
 }
 
@@ -256,7 +269,7 @@ double Contacts::Energy(std::span<const Vec3> y) const {
     const Vector3<double> sum = Sum(c, y);
     const double depth = c.distance - Dot(c.normal, sum) - c.offset;
     if (depth > 0 || c.held) energy += 0.5 * c.stiffness * depth * depth;
-    const Vector3<double> slide = Tangential(sum - c.slideFrom, c.normal);
+    const Vector3<double> slide = Slide(c, sum);
     energy += 0.5 * c.drag * Dot(slide, slide);
   }
   return energy;
@@ -268,20 +281,14 @@ double Contacts::Update(std::span<const Vec3> y, const SystemMatrix& matrix) {
     const double depth = c.distance - Dot(c.normal, sum) - c.offset;
     c.held = first_ && c.force > 0;
     c.active = depth > 0 || c.held;
-    if (c.active) {
-      const Vector3<double>& n = c.normal;
-      const double k = kStiffness * Resistance(c, [&](std::int32_t v) {
-                         const Real* d = matrix.DiagonalBlock(v);
-                         return n.x * (d[0] * n.x + d[3] * n.y + d[6] * n.z) +
-                                n.y * (d[1] * n.x + d[4] * n.y + d[7] * n.z) +
-                                n.z * (d[2] * n.x + d[5] * n.y + d[8] * n.z);
-                       });
+    if (c.active && step_.firm) {
+      const double k = kStiffness * Resistance(c, [&](std::int32_t v) { return Softest(matrix.DiagonalBlock(v)); });
       if (k > c.base) Fit(k, c);
     }
     c.seen = (!first_ && c.seen) || c.active;
     // What presses is what pressed a step ago: where a contact begins, the first guess of it is far too great.
     if (!first_) c.force = c.active ? c.stiffness * depth : 0;
-    const Vector3<double> slide = Tangential(sum - c.slideFrom, c.normal);
+    const Vector3<double> slide = Slide(c, sum);
     const double length = std::sqrt(Dot(slide, slide)), most = c.friction * c.force;
     c.drag = !c.active ? 0 : most < c.stiffness * length ? most / length : most > 0 ? c.stiffness : 0;
   }
@@ -294,7 +301,7 @@ void Contacts::AddGradient(std::span<const Vec3> y, std::span<Vec3> gradient) co
     if (!c.active) continue;
     const Vector3<double> sum = Sum(c, y);
     const double depth = c.distance - Dot(c.normal, sum) - c.offset;
-    Vector3<double> pull = Tangential(sum - c.slideFrom, c.normal) * c.drag;
+    Vector3<double> pull = Slide(c, sum) * c.drag;
     if (depth > 0 || c.held) pull -= c.normal * (c.stiffness * depth);
     for (std::size_t k = 0; k < 4; ++k) {
       const std::int32_t v = c.vertex[k];
@@ -324,9 +331,9 @@ void Contacts::End(std::span<const Vec3> y) {
     if (!(depth > 0) || c.key.kind == ContactKey::Kind::Tangle) continue;
     Stick stick;
     stick.force = c.stiffness * depth;
-    stick.slide = Tangential(sum - c.slideFrom, c.normal);
-    const double length = std::sqrt(Dot(stick.slide, stick.slide)), most = c.friction * stick.force;
-    if (c.stiffness * length > most) stick.slide = stick.slide * (most / (c.stiffness * length));
+    stick.hold = Slide(c, sum) * c.stiffness;
+    const double length = std::sqrt(Dot(stick.hold, stick.hold)), most = c.friction * stick.force;
+    if (length > most) stick.hold = stick.hold * (most / length);
     nextMemory_.Put(c.key, stick);
   }
   std::swap(memory_, nextMemory_);

@@ -38,6 +38,7 @@ struct Contact {
   double stiffness = 0;                  ///< Of the parabola [N/m].
   double distance = 0;                   ///< Gap below which the sides push each other [m].
   double friction = 0;                   ///< Coulomb's coefficient.
+  Vector3<double> hold;                  ///< Of friction, as the step begins [N].
   Vector3<double> slideFrom;  ///< slide = what is tangential of sum of weights times positions - slideFrom [m]
   // As of the last Update:
   bool active = true;
@@ -60,6 +61,7 @@ class Contacts {
     std::span<const std::uint8_t> free;        ///< Per vertex of cloth: 0 for pins.
     std::span<const double> mass;              ///< Per vertex of cloth [kg].
     double h = 0;                              ///< Length of the step [s].
+    bool firm = false;                         ///< Contacts are as stiff as the tension in cloth asks for.
     std::span<const ContactSurface> surfaces;  ///< Per body.
   };
   /// Forgets all planes; those of the step before are remembered for friction.

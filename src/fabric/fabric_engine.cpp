@@ -15,14 +15,12 @@ namespace {
 constexpr double kBound = 1e6;
 /// Drag coefficient of a sheet along the wind (Hoerner 1965, "Fluid-dynamic drag", chapter 2).
 constexpr double kSkinDrag = 0.01;
-/// Where a vertex had to stop farther from where it was to go than contact reaches, the step goes on with what stopped
-/// it known, for so many more iterations or half as many as it had, whichever is more, and so often.
+/// Where more than this share of all vertices had to stop on their way, or one this share of the distance of contact
+/// from where it was to go, the step goes on with what stopped it known, for so many more iterations or half as many as
+/// it had, whichever is more; so often because of the latter.
+constexpr double kMostCut = 0.005, kMostStopped = 0.01;
 constexpr int kMoreIterations = 2;
 constexpr int kMostRounds = 4;
-/// What had to stop on its way may leave cloth with so many times the energy that it would have with all or none of the
-/// way; else all go less.
-constexpr double kMostTorn = 2;
-constexpr int kMostShortenings = 5;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -221,35 +219,22 @@ void FabricEngine::Minimise(int iterations) {
   counts_.converged = counts_.converged && result.converged;
 }
 
-/// The energy without that of contact.
-double FabricEngine::FreeEnergy(std::span<const Vec3> y) {
-  solver_.objective().SetContacts(nullptr);
-  const double energy = solver_.objective().Energy(y);
-  solver_.objective().SetContacts(&contact_->contacts());
-  return energy;
-}
-
-/// Towards next_ as far as all can go; where some had to stop and others not, only so far that cloth is not torn.
-SafeMoveReport FabricEngine::MoveSafely() {
-  const double most = kMostTorn * std::max(FreeEnergy(next_), FreeEnergy(position_));
-  const SafeMoveReport report = contact_->Move(position_, next_);
-  for (int halving = 0; report.cut > 0 && halving < kMostShortenings && FreeEnergy(next_) > most; ++halving)
-    contact_->Shorten(position_, next_, 0.5);
-  return report;
-}
-
 void FabricEngine::Move() {
   previous_ = next_;
   const std::vector<Vec3>& ahead = previous_;
-  SafeMoveReport report = MoveSafely();
+  SafeMoveReport report = contact_->Move(position_, next_);
   const double wanted = report.wanted;
-  for (int round = 1; round < kMostRounds && report.worst > contact_->distance(); ++round) {
+  const double mostCut = kMostCut * static_cast<double>(position_.size());
+  for (int round = 1; round < kMostRounds; ++round) {
+    const bool many = round == 1 && static_cast<double>(report.cut) > mostCut;
+    if (!many && report.worst <= kMostStopped * contact_->distance()) break;
+    const bool firm = round > 1 && report.worst > contact_->distance();
     // What was met on the way has its plane now, and what would be met on the rest of it.
     position_ = next_;
-    contact_->FindPlanes(begin_, position_, ahead, free_, h_);
+    contact_->FindPlanes(begin_, position_, ahead, free_, h_, firm);
     for (const Pin& pin : pins_.All()) next_[Index(pin.point)] = pin.target;
     Minimise(std::max(kMoreIterations, scene_.simulation.newtonIterations / 2));
-    report = MoveSafely();
+    report = contact_->Move(position_, next_);
   }
   const double lost = report.lost;
   previous_ = begin_;

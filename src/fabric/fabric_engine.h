@@ -81,8 +81,6 @@ class FabricEngine {
  private:
   void SetUp();
   void Minimise(int iterations);
-  double FreeEnergy(std::span<const Vec3> y);
-  SafeMoveReport MoveSafely();
   void UpdatePins();
   void StartFolds();
   void YieldFolds();

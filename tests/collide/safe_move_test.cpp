@@ -140,10 +140,12 @@ TEST_CASE("a vertex without a way stays, and the rest may come as near as the fl
   const Moved moved = Move(m);
   for (std::size_t v = 0; v < 64; ++v) CHECK(moved.end[v] == m.start[v]);
   const double floor = FloorOf(2 * kSpacing, 2 * kHalf);
+  double nearest = 1;
   for (std::size_t v = 64; v < m.way.size(); ++v) {
     CHECK(moved.end[v].z >= floor * (1 - 1e-9));
-    CHECK(moved.end[v].z <= floor + 0.1 * 2 * kSpacing);
+    nearest = std::min(nearest, moved.end[v].z);
   }
+  CHECK(nearest <= floor + 0.1 * 2 * kSpacing);
 }
 
 TEST_CASE("the floor lets a pair come back as often as it likes") {

@@ -56,9 +56,14 @@ TEST_CASE("a warmed-up step on one thread does not allocate, whatever the laws")
       cloth.membraneLaw = membrane;
       cloth.pressure = 1;
       World world(scene, {.threads = 1});
+      // Lists grow with what touches: so the second time, after the look at how cloth starts.
+      WorldState start;
+      world.Save(start);
+      for (int frame = 0; frame < 30; ++frame) world.Step();
+      world.Restore(start);
       world.Step();
       CHECK(CountAllocations([&] {
-              for (int frame = 0; frame < 3; ++frame) world.Step();
+              for (int frame = 1; frame < 30; ++frame) world.Step();
             }) == 0);
       CHECK(!world.report().divergence);
     }
