@@ -205,8 +205,7 @@ CaseResult VerifyCapstan(const Effort& effort) {
     for (int i = columns - 1; i >= 0; --i) {
       const auto v = static_cast<std::size_t>(MiddleOf(belt, i));
       const Vec3 middle = (x[v] + x[v + 1]) / 2;
-      const double angle =
-          middle.y < 0 ? (middle.x > 0 ? 0 : 180) : std::acos(middle.x / Length(middle)) * 180 / std::numbers::pi;
+      const double angle = std::atan2(std::max(middle.y, 0.0), middle.x) * 180 / std::numbers::pi;
       line.points.push_back({angle, tension(i) / tension(columns - 1)});
     }
     plot.series.push_back(std::move(line));
