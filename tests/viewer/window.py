@@ -88,7 +88,7 @@ class Viewer:
         self.events = []
         self.read = 0
         self.rest = ""
-        self.first = "panel Simulation"  # a control of the first picture
+        self.first = "panel Parameters"  # a control of the first picture
 
     def __enter__(self):
         try:
