@@ -2,6 +2,7 @@
 /// \file
 /// Everything that may touch: the vertices, edges and triangles of all cloths, and behind them those of obstacles.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "percale/vec3.h"
 
 namespace percale {
+
+/// Four vertices: a vertex and the corners of a triangle, or the ends of one edge and of another.
+using VertexQuad = std::array<std::int32_t, 4>;
 
 struct ContactMesh {
   int clothVertices = 0;           ///< Vertices from here on belong to obstacles.

@@ -133,6 +133,16 @@ struct WriteArgs {
   std::int32_t* to;  ///< Out: room for all.
 };
 
+/// How pairs of things are: proximity.h says what a PairState is.
+struct PairStateArgs {
+  static constexpr int kNumbers = 8;  ///< Of a state: four weights, a normal and a gap.
+  bool edges;                         ///< Two edges each, or a vertex and a triangle.
+  int count;
+  const std::int32_t* quads;  ///< Four vertices per pair.
+  const Vec3* x;              ///< [m]
+  double* states;             ///< Out: kNumbers per pair.
+};
+
 struct Kernels {
   const char* name;
   void (*vertexRows)(const RowArgs&);
@@ -151,6 +161,7 @@ struct Kernels {
   int (*writeVertexTriangle)(const WriteArgs&);
   /// The same of two edges.
   int (*writeEdgeEdge)(const WriteArgs&);
+  void (*pairStates)(const PairStateArgs&);
 };
 
 /// All that the processor can run, the plain ones first and the fastest last.

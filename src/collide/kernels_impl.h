@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "collide/kernels.h"
+#include "collide/proximity.h"
 #include "math/pack.h"
 
 #if defined(__SSE2__)
@@ -23,6 +24,7 @@ using Floats = Pack<float, 4, Level>;
 #include "collide/kernel_pairs.h"
 #include "collide/kernel_search.h"
 #include "collide/kernel_shapes.h"
+#include "collide/kernel_states.h"
 #include "collide/kernel_write.h"
 
 }  // namespace
@@ -40,6 +42,7 @@ const Kernels kKernels = {
     .nearItems = FindNearItems,
     .writeVertexTriangle = WriteVertexTriangle,
     .writeEdgeEdge = WriteEdgeEdge,
+    .pairStates = PairStates,
 };
 
 }  // namespace percale::collide::PERCALE_KERNELS

@@ -2,7 +2,6 @@
 /// \file
 /// Finds what comes close to what while all vertices of a mesh move along straight lines.
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -13,9 +12,6 @@
 #include "percale/vec3.h"
 
 namespace percale {
-
-/// Four vertices: a vertex and the corners of a triangle, or the ends of one edge and of another.
-using VertexQuad = std::array<std::int32_t, 4>;
 
 /// From start to start + way, all vertices in common time.
 struct MeshMotion {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collide/kernels.h"
+
 namespace percale {
 namespace {
 
@@ -39,6 +41,17 @@ PairState StateOf(PairKind kind, const Corners<double>& x) {
   state.normal = closest.way * (1 / length);
   state.gap = std::max(0.0, GapAlong(kind, x, state.normal));
   return state;
+}
+
+void StatesOf(PairKind kind, std::span<const VertexQuad> pairs, std::span<const Vec3> x, std::span<PairState> states) {
+  static_assert(sizeof(PairState) == collide::PairStateArgs::kNumbers * sizeof(double));
+  static_assert(sizeof(VertexQuad) == 4 * sizeof(std::int32_t));
+  if (pairs.empty()) return;
+  collide::BestKernels().pairStates({.edges = kind == PairKind::EdgeEdge,
+                                     .count = static_cast<int>(pairs.size()),
+                                     .quads = pairs.front().data(),
+                                     .x = x.data(),
+                                     .states = states.front().weight.data()});
 }
 
 Corners<double> After(const Corners<double>& x, const Corners<double>& way, double t) {

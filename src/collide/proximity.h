@@ -5,8 +5,11 @@
 /// things with a gap along any direction are at least that far apart.
 
 #include <array>
+#include <span>
 
+#include "collide/contact_mesh.h"
 #include "math/vector3.h"
+#include "percale/vec3.h"
 
 namespace percale {
 
@@ -126,6 +129,8 @@ struct PairState {
   double gap = 0;          ///< [m]; at most the distance, and all but rounding of it.
 };
 PairState StateOf(PairKind kind, const Corners<double>& x);
+/// The same of many pairs of the vertices `x` [m], to the same bits and several at a time. `states`: one per pair.
+void StatesOf(PairKind kind, std::span<const VertexQuad> pairs, std::span<const Vec3> x, std::span<PairState> states);
 
 /// Where a pair is after the share t of its ways.
 Corners<double> After(const Corners<double>& x, const Corners<double>& way, double t);

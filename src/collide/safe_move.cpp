@@ -73,7 +73,7 @@ SafeMove::SafeMove(const ContactMesh& mesh, const Executor& executor)
 }
 
 void SafeMove::Clear() {
-  for (Pairs& pairs : pairs_) pairs.list.clear();
+  for (NearPairs& pairs : pairs_) pairs.vertex = {};
 }
 
 double SafeMove::DistanceOf(PairKind kind, const VertexQuad& quad, const ContactDistances& distances) const {
@@ -89,14 +89,14 @@ double SafeMove::DistanceOf(PairKind kind, const VertexQuad& quad, const Contact
   return std::min(distance, kOwnShare * std::sqrt(ClosestOf(kind, place).squared));
 }
 
+/// Calls body(kind, begin, end) for pairs of one kind, chunk by chunk.
 template <class Body>
 void SafeMove::ForPairs(Body&& body) {
   for (std::size_t kind = 0; kind < 2; ++kind) {
-    const int count = static_cast<int>(pairs_[kind].list.size());
-    executor_.ForChunks((count + kPairsPerChunk - 1) / kPairsPerChunk, [&](int chunk) {
-      const int end = std::min(count, (chunk + 1) * kPairsPerChunk);
-      for (int p = chunk * kPairsPerChunk; p < end; ++p)
-        body(kKinds[kind], pairs_[kind].list[Index(p)], pairs_[kind].share[Index(p)]);
+    const std::size_t count = pairs_[kind].size();
+    executor_.ForChunks(static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk), [&](int chunk) {
+      const std::size_t begin = Index(chunk) * kPairsPerChunk;
+      body(kind, begin, std::min(count, begin + kPairsPerChunk));
     });
   }
 }
@@ -105,44 +105,54 @@ void SafeMove::ForPairs(Body&& body) {
 void SafeMove::Search(const Ways& ways, const ContactDistances& distances) {
   finder_.Find({.start = ways.start, .way = gone_, .cut = cut_}, distances.half, distances.clothPairs);
   for (std::size_t kind = 0; kind < 2; ++kind) {
-    const std::span<const VertexQuad> found = kind == 0 ? finder_.vertexTriangle() : finder_.edgeEdge();
-    pairs_[kind].list.resize(found.size());
-    pairs_[kind].share.resize(found.size());
-    for (std::size_t p = 0; p < found.size(); ++p) pairs_[kind].list[p].vertex = found[p];
+    NearPairs& pairs = pairs_[kind];
+    pairs.vertex = kind == 0 ? finder_.vertexTriangle() : finder_.edgeEdge();
+    pairs.distance.resize(pairs.size());
+    pairs.start.resize(pairs.size());
+    pairs.exempt.resize(pairs.size());
+    shares_[kind].assign(pairs.size(), 1);
   }
-  ForPairs([&](PairKind kind, NearPair& pair, double& share) {
-    pair.distance = DistanceOf(kind, pair.vertex, distances);
-    pair.start = StateOf(kind, Gather(ways.start, pair.vertex));
-    pair.exempt = !exempt_.empty() && exempt_.Has(kind, pair.vertex);
-    share = 1;
+  ForPairs([&](std::size_t kind, std::size_t begin, std::size_t end) {
+    NearPairs& pairs = pairs_[kind];
+    StatesOf(kKinds[kind], pairs.vertex.subspan(begin, end - begin), ways.start,
+             std::span(pairs.start).subspan(begin, end - begin));
+    for (std::size_t p = begin; p < end; ++p) {
+      pairs.distance[p] = DistanceOf(kKinds[kind], pairs.vertex[p], distances);
+      pairs.exempt[p] = !exempt_.empty() && exempt_.Has(kKinds[kind], pairs.vertex[p]) ? 1 : 0;
+    }
   });
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});
 }
 
 /// Tests the pairs of vertices that changed, and shortens the ways of those that fail. Returns how many do.
 std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
-  ForPairs([&](PairKind kind, NearPair& pair, double& share) {
-    share = 1;
-    const VertexQuad& v = pair.vertex;
-    if (!(changed_[Index(v[0])] | changed_[Index(v[1])] | changed_[Index(v[2])] | changed_[Index(v[3])])) return;
-    if (!(pair.start.gap > 0) || pair.exempt) return;
-    Corners<double> way;
-    for (std::size_t k = 0; k < 4; ++k) way[k] = From<double>(ways.way[Index(v[k])]) * ways.share[Index(v[k])];
-    share = ShareApart(kind, Gather(ways.start, v), way, pair.start, FloorOf(pair.start.gap, pair.distance));
+  ForPairs([&](std::size_t kind, std::size_t begin, std::size_t end) {
+    const NearPairs& pairs = pairs_[kind];
+    for (std::size_t p = begin; p < end; ++p) {
+      shares_[kind][p] = 1;
+      const VertexQuad& v = pairs.vertex[p];
+      if (!(changed_[Index(v[0])] | changed_[Index(v[1])] | changed_[Index(v[2])] | changed_[Index(v[3])])) continue;
+      const double gap = pairs.start[p].gap;
+      if (!(gap > 0) || pairs.exempt[p]) continue;
+      Corners<double> way;
+      for (std::size_t k = 0; k < 4; ++k) way[k] = From<double>(ways.way[Index(v[k])]) * ways.share[Index(v[k])];
+      shares_[kind][p] =
+          ShareApart(kKinds[kind], Gather(ways.start, v), way, pairs.start[p], FloorOf(gap, pairs.distance[p]));
+    }
   });
   std::int64_t failed = 0;
   std::fill(next_.begin(), next_.end(), std::uint8_t{0});
   std::fill(least_.begin(), least_.end(), 1.0);
-  for (const Pairs& pairs : pairs_) {
-    for (std::size_t p = 0; p < pairs.list.size(); ++p) {
-      double share = pairs.share[p];
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    for (std::size_t p = 0; p < pairs_[kind].size(); ++p) {
+      double share = shares_[kind][p];
       if (share >= 1) continue;
       ++failed;
       if (sweep >= kStopFrom)
         share = 0;
       else if (sweep >= kHalveFrom)
         share *= 0.5;
-      for (const std::int32_t v : pairs.list[p].vertex) {
+      for (const std::int32_t v : pairs_[kind].vertex[p]) {
         const Vec3& way = ways.way[Index(v)];
         if (Dot(way, way) == 0) continue;
         least_[Index(v)] = std::min(least_[Index(v)], share);

@@ -21,12 +21,14 @@ struct ContactDistances {
   bool clothPairs = true;    ///< Whether cloth feels cloth.
 };
 
-/// Two things near the way of the last move.
-struct NearPair {
-  VertexQuad vertex;
-  double distance = 0;  ///< Below which they are in contact [m].
-  PairState start;      ///< As the move began.
-  bool exempt = false;  ///< May pass through each other.
+/// What is near a way: two things each.
+struct NearPairs {
+  std::span<const VertexQuad> vertex;
+  std::vector<double> distance;      ///< Below which they are in contact [m].
+  std::vector<PairState> start;      ///< As the move began.
+  std::vector<std::uint8_t> exempt;  ///< 1: may pass through each other.
+
+  std::size_t size() const { return vertex.size(); }
 };
 
 /// Pairs that nothing keeps apart, as what they belong to is tangled.
@@ -66,8 +68,8 @@ class SafeMove {
   void List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances);
 
   /// All that came near in the last move or on the last way listed, and more.
-  std::span<const NearPair> vertexTriangle() const { return pairs_[0].list; }
-  std::span<const NearPair> edgeEdge() const { return pairs_[1].list; }
+  const NearPairs& vertexTriangle() const { return pairs_[0]; }
+  const NearPairs& edgeEdge() const { return pairs_[1]; }
   /// Forgets them.
   void Clear();
 
@@ -76,10 +78,6 @@ class SafeMove {
   double DistanceOf(PairKind kind, const VertexQuad& quad, const ContactDistances& distances) const;
 
  private:
-  struct Pairs {
-    std::vector<NearPair> list;
-    std::vector<double> share;  // per pair, of the last test
-  };
   struct Ways {
     std::span<const Vec3> start, way;
     std::span<double> share;
@@ -95,7 +93,8 @@ class SafeMove {
   const Executor& executor_;
   PairFinder finder_;
   ExemptPairs exempt_;
-  Pairs pairs_[2];                                  // by kind
+  NearPairs pairs_[2];                              // by kind
+  std::vector<double> shares_[2];                   // per pair, of the last test
   std::vector<Vec3> gone_;                          // per vertex: the way that it may go
   std::vector<double> least_;                       // per vertex: of the pairs that fail in a sweep
   std::vector<std::uint8_t> cut_, changed_, next_;  // per vertex

@@ -168,40 +168,45 @@ void Contacts::Remember(Contact& contact) {
   contact.force = stick->force;
 }
 
-void Contacts::AddPairs(PairKind kind, std::span<const NearPair> pairs) {
-  found_.resize(pairs.size());
-  kept_.resize(pairs.size());
-  const int count = static_cast<int>(pairs.size());
-  executor_.ForChunks((count + kPairsPerChunk - 1) / kPairsPerChunk, [&](int chunk) {
-    for (int p = chunk * kPairsPerChunk; p < std::min(count, (chunk + 1) * kPairsPerChunk); ++p) {
-      const NearPair& pair = pairs[Index(p)];
-      kept_[Index(p)] = 0;
+void Contacts::AddPairs(PairKind kind, const NearPairs& pairs) {
+  const std::size_t count = pairs.size();
+  found_.resize(count);
+  kept_.resize(count);
+  states_.resize(count);
+  executor_.ForChunks(static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk), [&](int chunk) {
+    const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(count, begin + kPairsPerChunk);
+    StatesOf(kind, pairs.vertex.subspan(begin, end - begin), step_.start,
+             std::span(states_).subspan(begin, end - begin));
+    for (std::size_t p = begin; p < end; ++p) {
+      const VertexQuad& vertex = pairs.vertex[p];
+      const PairState& now = states_[p];
+      const double distance = pairs.distance[p];
+      kept_[p] = 0;
+      if (!(now.gap > 0) || pairs.exempt[p]) continue;
       Corners<double> x, way;
       for (std::size_t k = 0; k < 4; ++k) {
-        x[k] = From<double>(step_.start[Index(pair.vertex[k])]);
-        way[k] = From<double>(step_.way[Index(pair.vertex[k])]);
+        x[k] = From<double>(step_.start[Index(vertex[k])]);
+        way[k] = From<double>(step_.way[Index(vertex[k])]);
       }
-      const PairState now = StateOf(kind, x);
-      if (!(now.gap > 0) || pair.exempt) continue;
       PairState plane = now;
-      const double share = ShareApart(kind, x, way, now, FloorOf(now.gap, pair.distance));
+      const double share = ShareApart(kind, x, way, now, FloorOf(now.gap, distance));
       if (share < 1) {
         plane = StateOf(kind, After(x, way, share));
         if (!(plane.gap > 0)) plane = now;
-      } else if (now.gap >= kSoon * pair.distance) {
+      } else if (now.gap >= kSoon * distance) {
         continue;
       }
-      const double counts = ShareOf(kind, pair.vertex, plane.weight);
+      const double counts = ShareOf(kind, vertex, plane.weight);
       if (counts == 0) continue;
-      kept_[Index(p)] = 1;
-      Contact& c = found_[Index(p)];
+      kept_[p] = 1;
+      Contact& c = found_[p];
       c = {};
       c.key = {kind == PairKind::VertexTriangle ? ContactKey::Kind::VertexTriangle : ContactKey::Kind::EdgeEdge,
-               pair.vertex};
+               vertex};
       c.normal = plane.normal;
       Vector3<double> obstacle;
       for (std::size_t k = 0; k < 4; ++k) {
-        const std::int32_t v = pair.vertex[k];
+        const std::int32_t v = vertex[k];
         c.weight[k] = plane.weight[k];
         c.vertex[k] = v < mesh_.clothVertices ? v : -1;
         if (c.vertex[k] < 0) obstacle += (x[k] + way[k]) * plane.weight[k];
@@ -209,17 +214,17 @@ void Contacts::AddPairs(PairKind kind, std::span<const NearPair> pairs) {
       }
       c.offset = Dot(c.normal, obstacle);
       c.slideFrom -= obstacle;
-      const ContactSurface& a = step_.surfaces[Index(mesh_.body[Index(pair.vertex[0])])];
-      const ContactSurface& b = step_.surfaces[Index(mesh_.body[Index(pair.vertex[3])])];
+      const ContactSurface& a = step_.surfaces[Index(mesh_.body[Index(vertex[0])])];
+      const ContactSurface& b = step_.surfaces[Index(mesh_.body[Index(vertex[3])])];
       double ahead = 0;
       for (std::size_t k = 0; k < 4; ++k) ahead += c.weight[k] * Dot(c.normal, x[k] + way[k]);
-      Start(now.gap, pair.distance, pair.distance - ahead, counts, c);
-      if (!(c.stiffness > 0)) kept_[Index(p)] = 0;
+      Start(now.gap, distance, distance - ahead, counts, c);
+      if (!(c.stiffness > 0)) kept_[p] = 0;
       c.friction = FrictionOf(a, b);
       Remember(c);
     }
   });
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
+  for (std::size_t p = 0; p < count; ++p) {
     if (kept_[p]) contacts_.push_back(found_[p]);
   }
 }

@@ -67,7 +67,7 @@ class Contacts {
   /// Forgets all planes; those of the step before are remembered for friction.
   void Begin(const Step& step);
   /// Planes between what is near, or meets on the way. The spans of the step must stay until all are added.
-  void AddPairs(PairKind kind, std::span<const NearPair> pairs);
+  void AddPairs(PairKind kind, const NearPairs& pairs);
   /// Pulls at what is tangled.
   void AddTangles(std::span<const Tangle> tangles, const ContactDistances& distances);
   /// A plane through `point`, which is where the surface will be at the end of the step and was at `pointBefore` at
@@ -112,6 +112,7 @@ class Contacts {
   std::vector<Contact> contacts_;
   std::vector<std::uint8_t> kept_;  // per pair while they are added
   std::vector<Contact> found_;
+  std::vector<PairState> states_;
   std::vector<ExtraTerm> terms_;
   ContactMemory memory_, nextMemory_;
   bool first_ = true;  // no Update yet in this step

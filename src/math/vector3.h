@@ -30,7 +30,7 @@ T Greater(T a, T b) {
 }
 template <class T>
 T Lesser(T a, T b) {
-  return Select(a < b, a, b);
+  return Select(b > a, a, b);
 }
 
 template <class T>

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
+#include "collide/kernels.h"
 #include "math/splitmix64.h"
 #include "tests/collide/contact_meshes.h"
 
@@ -71,6 +73,35 @@ TEST_CASE("the closest points of a pair are as far apart as nothing else is near
       CHECK(std::abs(sum) < 1e-9);
       const Vector3<double> off = way - closest.way;
       CHECK(std::sqrt(Dot(off, off)) <= 1e-12);
+    }
+  }
+}
+
+TEST_CASE("many pairs at a time are as they are one by one, to the bit, with every instruction set") {
+  std::vector<Vec3> x;
+  std::vector<VertexQuad> pairs;
+  for (const Corners<double>& shape : Shapes()) {
+    const auto first = static_cast<std::int32_t>(x.size());
+    for (const auto& corner : shape) x.push_back(ToVec3(corner));
+    pairs.push_back({first, first + 1, first + 2, first + 3});
+  }
+  pairs.push_back({0, 1, 0, 1});  // no length, no area, no distance
+  pairs.push_back({0, 0, 0, 0});
+  const auto isSame = [](const PairState& a, const PairState& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+  for (const PairKind kind : kKinds) {
+    for (const collide::Kernels* kernels : collide::RunnableKernels()) {
+      CAPTURE(kernels->name);
+      std::vector<PairState> states(pairs.size() + 1);
+      const int count = static_cast<int>(pairs.size());
+      kernels->pairStates({kind == PairKind::EdgeEdge, count, pairs[0].data(), x.data(), states[0].weight.data()});
+      int same = 0;
+      for (std::size_t p = 0; p < pairs.size(); ++p) {
+        Corners<double> corners;
+        for (std::size_t k = 0; k < 4; ++k) corners[k] = From<double>(x[static_cast<std::size_t>(pairs[p][k])]);
+        same += isSame(states[p], StateOf(kind, corners)) ? 1 : 0;
+      }
+      CHECK(same == count);
+      CHECK(isSame(states.back(), {}));
     }
   }
 }
