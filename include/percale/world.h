@@ -68,6 +68,8 @@ struct StepReport {
                                                    ///< colliders that cloth holds up.
   double lostMotion = 0;                 ///< Engine::Fabric: share of the way of all vertices that was cut off
                                          ///< so that nothing passes through anything, of all steps.
+  int splits = 0;                        ///< Engine::Fabric: steps, and parts of steps, that were done over in parts
+                                         ///< since much was stopped on its way.
   int newtonIterations = 0;              ///< Engine::Fabric: corrections, summed over the steps.
   int linearIterations = 0;              ///< Engine::Fabric: of the linear solver, summed over the steps.
   double residual = 0;                   ///< Engine::Fabric: last correction over the first, worst step.

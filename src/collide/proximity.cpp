@@ -27,6 +27,20 @@ double Approach(PairKind kind, const Corners<double>& way) {
   return std::sqrt(std::max(squared[0], squared[1])) + std::sqrt(std::max(squared[2], squared[3]));
 }
 
+/// Whether one direction is seen to part a pair with the gap `floor` where it is now and where it will be then, and so
+/// all the way between: that in which they are apart now, or then, or one between the two.
+bool ArePartedThroughout(PairKind kind, const Corners<double>& x, const PairState& now, const Corners<double>& next,
+                         const PairState& then, double floor) {
+  if (now.gap >= floor && GapAlong(kind, next, now.normal) >= floor) return true;
+  if (!(then.gap >= floor)) return false;
+  if (GapAlong(kind, x, then.normal) >= floor) return true;
+  const Vector3<double> sum = now.normal + then.normal;
+  const double square = Dot(sum, sum);
+  if (!(square > 0.01)) return false;
+  const Vector3<double> between = sum * (1 / std::sqrt(square));
+  return GapAlong(kind, x, between) >= floor && GapAlong(kind, next, between) >= floor;
+}
+
 }  // namespace
 
 PairState StateOf(PairKind kind, const Corners<double>& x) {
@@ -71,19 +85,35 @@ double ShareApart(PairKind kind, const Corners<double>& x, const Corners<double>
   if (StaysApart(kind, x, way, start, floor)) return 1;
   const double speed = Approach(kind, way);
   const double enough = kClose * (start.gap - floor);
-  double t = 0;
+  double t = 0, longest = 1;
+  Corners<double> at = x;
   PairState now = start;
-  for (int advance = 0; advance < kMostAdvances; ++advance) {
+  for (int advance = 0; advance < kMostAdvances && t < 1; ++advance) {
     const double room = now.gap - floor;
-    if (!(room > 0) || (advance > 0 && room <= enough)) break;
-    t += room * kSafe / speed;
-    if (t >= 1) return 1;
-    const Corners<double> moved = After(x, way, t);
-    now = StateOf(kind, moved);
-    if (now.gap >= floor && GapAlong(kind, After(x, way, 1), now.normal) >= floor) return 1;
+    if (!(room > 0) || (advance > 0 && room <= enough)) return t;
+    const double safe = room * kSafe / speed;
+    // Farther than is safe at any rate, if it is seen to be.
+    double step = std::min(longest, 1 - t);
+    Corners<double> next;
+    PairState then;
+    for (; step > 2 * safe; step *= 0.5) {
+      next = After(x, way, t + step);
+      then = StateOf(kind, next);
+      if (ArePartedThroughout(kind, at, now, next, then, floor)) break;
+    }
+    if (step <= 2 * safe) {
+      if (t + safe >= 1) return 1;
+      step = safe;
+      next = After(x, way, t + step);
+      then = StateOf(kind, next);
+    }
+    t += step;
+    longest = 2 * step;
+    at = next;
+    now = then;
   }
   // The last advance was safe by its bound, whatever was measured where it ended.
-  return t;
+  return std::min(t, 1.0);
 }
 
 }  // namespace percale

@@ -9,12 +9,15 @@ namespace {
 constexpr int kPairsPerChunk = 1024;
 /// Sweeps from which on what fails goes half as far, and no farther at all.
 constexpr int kHalveFrom = 10, kStopFrom = 25;
-/// Searches from which on every vertex counts as cut, so that no more is needed.
-constexpr int kMostSearches = 3;
+/// Searches from which on every vertex counts as cut, so that no more is needed; and after which a move that may give
+/// up does.
+constexpr int kMostSearches = 10, kFewSearches = 4;
 /// Then nothing goes farther than so many distances of contact.
 constexpr double kLongest = 60;
 /// Cloth is in contact with itself below this share of the distance that the pair has in the flat mesh.
 constexpr double kOwnShare = 0.35;
+/// What lies within so many edges of each other in the flat mesh are neighbours.
+constexpr double kNeighbours = 3;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -26,17 +29,6 @@ Corners<double> Gather(std::span<const Vec3> x, const VertexQuad& quad) {
   return corners;
 }
 
-/// The smallest way to write a pair.
-VertexQuad Smallest(PairKind kind, VertexQuad quad) {
-  if (kind == PairKind::VertexTriangle) {
-    std::sort(quad.begin() + 1, quad.end());
-    return quad;
-  }
-  std::sort(quad.begin(), quad.begin() + 2);
-  std::sort(quad.begin() + 2, quad.end());
-  return std::min(quad, VertexQuad{quad[2], quad[3], quad[0], quad[1]});
-}
-
 constexpr PairKind kKinds[2] = {PairKind::VertexTriangle, PairKind::EdgeEdge};
 
 }  // namespace
@@ -45,29 +37,38 @@ double FloorOf(double gap, double distance) {
   return std::min(0.999 * gap, std::max(std::min(0.2 * gap, 0.25 * distance), 0.05 * distance));
 }
 
-void ExemptPairs::Take(std::span<const Intersection> met, std::span<const Triangle> triangles) {
-  for (std::vector<VertexQuad>& pairs : pairs_) pairs.clear();
+void ExemptPairs::Take(std::span<const Intersection> met) {
+  empty_ = met.empty();
+  if (empty_) return;
+  rings_.assign(Index(mesh_.vertices()), 0);
   for (const Intersection& at : met) {
-    const Triangle& t = triangles[Index(at.triangle)];
-    const std::int32_t corner[3] = {t.a, t.b, t.c};
-    for (const std::int32_t v : at.edge) pairs_[0].push_back(Smallest(PairKind::VertexTriangle, {v, t.a, t.b, t.c}));
-    for (std::size_t k = 0; k < 3; ++k) {
-      pairs_[1].push_back(Smallest(PairKind::EdgeEdge, {at.edge[0], at.edge[1], corner[k], corner[(k + 1) % 3]}));
-    }
+    const Triangle& t = mesh_.triangles[Index(at.triangle)];
+    for (const std::int32_t v : {at.edge[0], at.edge[1], t.a, t.b, t.c}) rings_[Index(v)] = 1;
   }
-  for (std::vector<VertexQuad>& pairs : pairs_) {
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  for (std::uint8_t ring = 1; ring <= kRings; ++ring) {
+    for (const Edge& edge : mesh_.edges) {
+      std::uint8_t &a = rings_[Index(edge.a)], &b = rings_[Index(edge.b)];
+      if (a == ring && b == 0) b = static_cast<std::uint8_t>(ring + 1);
+      if (b == ring && a == 0) a = static_cast<std::uint8_t>(ring + 1);
+    }
   }
 }
 
 bool ExemptPairs::Has(PairKind kind, const VertexQuad& quad) const {
-  const std::vector<VertexQuad>& pairs = pairs_[kind == PairKind::VertexTriangle ? 0 : 1];
-  return std::binary_search(pairs.begin(), pairs.end(), Smallest(kind, quad));
+  if (empty_) return false;
+  const std::size_t own = kind == PairKind::VertexTriangle ? 1 : 2;  // vertices of the first thing
+  bool first = false, second = false;
+  for (std::size_t k = 0; k < 4; ++k) (k < own ? first : second) |= rings_[Index(quad[k])] != 0;
+  if (!first || !second) return false;
+  if (mesh_.body[Index(quad[0])] != mesh_.body[Index(quad[3])]) return true;
+  const auto length = [&](std::size_t a, std::size_t b) {
+    return Length(mesh_.place[Index(quad[a])] - mesh_.place[Index(quad[b])]);
+  };
+  return length(0, 3) > kNeighbours * std::max(length(2, 3), kind == PairKind::EdgeEdge ? length(0, 1) : length(1, 3));
 }
 
 SafeMove::SafeMove(const ContactMesh& mesh, const Executor& executor)
-    : mesh_(mesh), executor_(executor), finder_(mesh, executor) {
+    : mesh_(mesh), executor_(executor), finder_(mesh, executor), exempt_(mesh) {
   for (std::vector<std::uint8_t>* flags : {&cut_, &changed_, &next_}) flags->resize(Index(mesh.vertices()));
   least_.resize(Index(mesh.vertices()));
 }
@@ -118,7 +119,7 @@ void SafeMove::Search(const Ways& ways, const ContactDistances& distances) {
              std::span(pairs.start).subspan(begin, end - begin));
     for (std::size_t p = begin; p < end; ++p) {
       pairs.distance[p] = DistanceOf(kKinds[kind], pairs.vertex[p], distances);
-      pairs.exempt[p] = !exempt_.empty() && exempt_.Has(kKinds[kind], pairs.vertex[p]) ? 1 : 0;
+      pairs.exempt[p] = exempt_.Has(kKinds[kind], pairs.vertex[p]) ? 1 : 0;
     }
   });
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});
@@ -185,7 +186,7 @@ void SafeMove::List(std::span<const Vec3> start, std::span<const Vec3> way, cons
 }
 
 SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances,
-                              std::span<double> share) {
+                              std::span<double> share, bool mayGiveUp) {
   SafeMoveReport report;
   const Ways ways{start, way, share};
   std::fill(share.begin(), share.end(), 1.0);
@@ -202,6 +203,10 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
       more = true;
     }
     if (!more) continue;
+    if (mayGiveUp && report.detections >= kFewSearches) {
+      report.gaveUp = true;
+      return report;
+    }
     if (report.detections + 1 >= kMostSearches) {
       std::fill(cut_.begin(), cut_.end(), std::uint8_t{1});
       LimitWays(ways, distances);

@@ -31,16 +31,22 @@ struct NearPairs {
   std::size_t size() const { return vertex.size(); }
 };
 
-/// Pairs that nothing keeps apart, as what they belong to is tangled.
+/// Pairs that nothing keeps apart, as they are near where the mesh is tangled.
 class ExemptPairs {
  public:
-  /// Those of edges and triangles that meet: of either end with the triangle, and of the edge with its sides.
-  void Take(std::span<const Intersection> met, std::span<const Triangle> triangles);
-  bool empty() const { return pairs_[0].empty(); }
+  /// The mesh must outlive it.
+  explicit ExemptPairs(const ContactMesh& mesh) : mesh_(mesh) {}
+
+  /// Those around edges and triangles that meet: of things within kRings triangles of them that are no neighbours.
+  void Take(std::span<const Intersection> met);
   bool Has(PairKind kind, const VertexQuad& quad) const;
 
+  static constexpr int kRings = 2;
+
  private:
-  std::vector<VertexQuad> pairs_[2];  // by kind; ascending, of each the smallest way to write it
+  const ContactMesh& mesh_;
+  bool empty_ = true;
+  std::vector<std::uint8_t> rings_;  // per vertex: 1 where it meets, 2 next to that ..., 0 elsewhere
 };
 
 struct SafeMoveReport {
@@ -49,6 +55,7 @@ struct SafeMoveReport {
   double lost = 0;       ///< Sum of what was cut off the ways [m].
   double worst = 0;      ///< The most that was cut off a way [m].
   double wanted = 0;     ///< Sum of the ways [m].
+  bool gaveUp = false;   ///< Nothing else was found out.
 };
 
 class SafeMove {
@@ -56,13 +63,14 @@ class SafeMove {
   /// Both must outlive it.
   SafeMove(const ContactMesh& mesh, const Executor& executor);
 
-  /// These may pass through each other.
-  ExemptPairs& exempt() { return exempt_; }
+  /// What is near these may pass through each other.
+  void Exempt(std::span<const Intersection> met) { exempt_.Take(met); }
 
   /// Shortens ways from `start` so that no pair meets: writes the share of its way that each vertex goes. A vertex
-  /// without a way stays. Allocates only where there are more pairs than ever before.
+  /// without a way stays. `mayGiveUp`: where one cut leads to the next for long, the report may say so instead.
+  /// Allocates only where there are more pairs than ever before.
   SafeMoveReport Move(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances,
-                      std::span<double> share);
+                      std::span<double> share, bool mayGiveUp = false);
 
   /// Lists what is near a way that is gone already.
   void List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances);

@@ -10,6 +10,8 @@ namespace {
 
 /// The distance of contact where the scene states none, over the mean edge.
 constexpr double kDistance = 0.3;
+/// What was near is looked for along no longer a way, over the distance.
+constexpr double kLookBack = 10;
 /// So many are untangled at a time.
 constexpr int kMostTangled = 1 << 20;
 /// How near cloth may come to a solid, how near it feels it soon, and how deep in it counts at most, over the distance.
@@ -145,10 +147,15 @@ void ContactStep::Begin(std::span<const Vec3> previous, std::span<const Vec3> st
   moves_ = 0;
   if (!judged_) Judge(start);
   if (listed_) return;
-  for (std::size_t v = 0; v < start.size(); ++v) start_[v] = previous[v], way_[v] = start[v] - previous[v];
-  for (std::size_t v = 0; v < obstacle_.size(); ++v) {
-    start_[start.size() + v] = obstacleBefore_[v];
-    way_[start.size() + v] = obstacle_[v] - obstacleBefore_[v];
+  const std::size_t cloth = start.size();
+  for (std::size_t v = 0; v < cloth; ++v) way_[v] = start[v] - previous[v];
+  for (std::size_t v = 0; v < obstacle_.size(); ++v) way_[cloth + v] = obstacle_[v] - obstacleBefore_[v];
+  double longest = 0;
+  for (const Vec3& way : way_) longest = std::max(longest, Length(way));
+  const double share = std::min(1.0, kLookBack * distance_ / std::max(longest, 1e-300));
+  for (std::size_t v = 0; v < way_.size(); ++v) {
+    way_[v] *= share;
+    start_[v] = (v < cloth ? start[v] : obstacle_[v - cloth]) - way_[v];
   }
   safeMove_.List(start_, way_, distances_);
   listed_ = true;
@@ -200,7 +207,7 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
   }
 }
 
-SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end) {
+SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end, bool mayGiveUp) {
   const std::size_t cloth = now.size();
   ForRange(executor_, cloth, [&](int vertex) {
     const std::size_t v = Index(vertex);
@@ -213,7 +220,8 @@ SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end)
     start_[cloth + v] = obstacle_[v];
     way_[cloth + v] = obstacleTarget_[v] - obstacle_[v];
   }
-  const SafeMoveReport report = safeMove_.Move(start_, way_, distances_, share_);
+  const SafeMoveReport report = safeMove_.Move(start_, way_, distances_, share_, mayGiveUp);
+  if (report.gaveUp) return report;
   for (std::size_t v = 0; v < cloth; ++v) {
     if (share_[v] < 1) end[v] = now[v] + way_[v] * share_[v];
   }
@@ -226,6 +234,13 @@ SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end)
   listed_ = report.cut == 0 && moves_ == 0;
   ++moves_;
   return report;
+}
+
+void ContactStep::Rewind() {
+  for (SolidStep& solid : solids_) solid.end = solid.start;
+  if (moves_ > 0) obstacle_ = obstacleBefore_;
+  moves_ = 0;
+  listed_ = false;
 }
 
 void ContactStep::End(std::span<const Vec3> y) {
@@ -253,7 +268,7 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
       return std::max(met.edge[1], mesh_.triangles[Index(met.triangle)].a) < mesh_.clothVertices;
     });
   }
-  safeMove_.exempt().Take(met_, mesh_.triangles);
+  safeMove_.Exempt(met_);
   judged_ = true;
 }
 

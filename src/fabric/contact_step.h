@@ -40,8 +40,11 @@ class ContactStep {
   /// lead to `ahead`. `begin`: where the step began, which is before that in a second round.
   void FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> now, std::span<const Vec3> ahead,
                   std::span<const std::uint8_t> free, double h, bool firm = false);
-  /// From now on towards `end` as far as all can go: writes where to. Returns what it took.
-  SafeMoveReport Move(std::span<const Vec3> now, std::span<Vec3> end);
+  /// From now on towards `end` as far as all can go: writes where to. Returns what it took. `mayGiveUp`: see SafeMove;
+  /// then there is nothing to do but to Rewind.
+  SafeMoveReport Move(std::span<const Vec3> now, std::span<Vec3> end, bool mayGiveUp = false);
+  /// The step is to be begun again: colliders are where they were, and what touched is remembered.
+  void Rewind();
   /// The step has ended at y.
   void End(std::span<const Vec3> y);
 

@@ -21,6 +21,11 @@ constexpr double kSkinDrag = 0.01;
 constexpr double kMostCut = 0.005, kMostStopped = 0.01;
 constexpr int kMoreIterations = 2;
 constexpr int kMostRounds = 4;
+/// Where a vertex is stopped farther than the distance of contact from where it was to go even then, the step is done
+/// over in so many parts, and each of them again, so many times at most.
+constexpr int kParts = 4, kMostSplits = 2;
+/// So it is where a triangle gets longer by this factor, over what it was or, if it was shorter, its rest length.
+constexpr double kMostStretching = 1.5;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -41,7 +46,7 @@ FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes,
   solver_.objective().SetContacts(&contact_->contacts());
   const std::size_t count = Index(model_.vertexCount);
   free_.assign(count, 1);
-  position_ = previous_ = predicted_ = next_ = begin_ = model_.start;
+  position_ = previous_ = predicted_ = next_ = begin_ = before_ = model_.start;
   loads_.resize(count);
   SetUp();
 }
@@ -112,25 +117,39 @@ void FabricEngine::MoveColliders(double time) {
 }
 
 bool FabricEngine::ApplyForces(double time, std::span<const Gust> gusts, std::span<const Handle> handles) {
+  gusts_.assign(gusts.begin(), gusts.end());
+  handles_.assign(handles.begin(), handles.end());
+  given_.clear();
+  HoldPins();
+  pinFrom_.clear();
+  pinTo_.clear();
+  for (const Pin& pin : pins_.All()) {
+    pinFrom_.push_back(position_[Index(pin.point)]);
+    pinTo_.push_back(pin.target);
+  }
+  Predict();
+  Blow(time);
+  Hold();
+  return std::all_of(predicted_.begin(), predicted_.end(), InBounds);
+}
+
+/// Where inertia and weight alone would lead.
+void FabricEngine::Predict() {
   const Vec3 fall = scene_.simulation.gravity * (h_ * h_);
-  std::atomic<bool> inBounds = true;
   ForRange(executor_, position_.size(), [&](int vertex) {
     const std::size_t v = Index(vertex);
     predicted_[v] = position_[v] + (position_[v] - previous_[v]) + fall;
     loads_[v] = {};
-    if (!InBounds(predicted_[v])) inBounds = false;
+    if (!given_.empty()) loads_[v].force = given_[v];
   });
-  Blow(time, gusts);
-  Hold(handles);
-  return inBounds;
 }
 
 /// Drag and lift of the air on each triangle, a third of it on each corner, which resists by its own way.
-void FabricEngine::Blow(double time, std::span<const Gust> gusts) {
+void FabricEngine::Blow(double time) {
   const WindSettings& wind = scene_.wind;
   Vec3 air = wind.velocity * (1 + wind.gustiness * std::sin(2 * std::numbers::pi * time / wind.gustPeriod));
   bool gusty = false;
-  for (const Gust& gust : gusts) {
+  for (const Gust& gust : gusts_) {
     const double phase = std::numbers::pi * (time - gust.start) / gust.duration;
     if (phase <= 0 || phase >= std::numbers::pi) continue;
     air += gust.velocity * (std::sin(phase) * std::sin(phase));
@@ -163,19 +182,29 @@ void FabricEngine::Blow(double time, std::span<const Gust> gusts) {
 
 void FabricEngine::AddForces(int cloth, std::span<const Vec3> forces) {
   const std::size_t first = Index(model_.firstVertex[Index(cloth)]);
-  for (std::size_t v = 0; v < forces.size(); ++v) loads_[first + v].force += forces[v];
+  given_.resize(position_.size());
+  for (std::size_t v = 0; v < forces.size(); ++v) {
+    given_[first + v] += forces[v];
+    loads_[first + v].force += forces[v];
+  }
+}
+
+/// A handle that grips a pin moves it.
+void FabricEngine::HoldPins() {
+  for (const Handle& handle : handles_) {
+    const int centre = model_.firstVertex[Index(handle.cloth)] + handle.vertex;
+    if (const Pin* pin = pins_.Find(centre))
+      pins_.Shift(Index(pin - pins_.All().data()), handle.target - position_[Index(centre)]);
+  }
 }
 
 /// Springs from the vertices around a grip to where it draws them, critically damped.
-void FabricEngine::Hold(std::span<const Handle> handles) {
-  for (const Handle& handle : handles) {
+void FabricEngine::Hold() {
+  for (const Handle& handle : handles_) {
     const int first = model_.firstVertex[Index(handle.cloth)], end = model_.firstVertex[Index(handle.cloth) + 1];
     const int centre = first + handle.vertex;
+    if (!free_[Index(centre)]) continue;
     const Vec3 way = handle.target - position_[Index(centre)];
-    if (const Pin* pin = pins_.Find(centre)) {
-      pins_.Shift(Index(pin - pins_.All().data()), way);
-      continue;
-    }
     const double w = 2 * std::numbers::pi * handle.frequency;
     for (int v = first; v < end; ++v) {
       const double share = GripShare(handle, model_.start[Index(v)] - model_.start[Index(centre)]);
@@ -188,6 +217,7 @@ void FabricEngine::Hold(std::span<const Handle> handles) {
 }
 
 void FabricEngine::Solve() {
+  before_ = previous_;
   contact_->Begin(previous_, position_);
   // Inertia may lead into much strain: then the better start is where the cloth is.
   ForRange(executor_, position_.size(), [&](int v) {
@@ -195,8 +225,9 @@ void FabricEngine::Solve() {
     previous_[Index(v)] = position_[Index(v)] + (position_[Index(v)] - previous_[Index(v)]);
   });
   std::vector<Vec3>& ahead = previous_;
-  for (const Pin& pin : pins_.All()) {
-    next_[Index(pin.point)] = ahead[Index(pin.point)] = predicted_[Index(pin.point)] = pin.target;
+  for (std::size_t p = 0; p < pinTo_.size(); ++p) {
+    const std::size_t v = Index(pins_.All()[p].point);
+    next_[v] = ahead[v] = predicted_[v] = pinTo_[p];
   }
   contact_->FindPlanes(begin_, position_, ahead, free_, h_);
   Objective& objective = solver_.objective();
@@ -220,23 +251,34 @@ void FabricEngine::Minimise(int iterations) {
 }
 
 void FabricEngine::Move() {
+  if (!TryMove(true)) SplitStep(0, 1, 1);
+  counts_.intersections = contact_->tangled();
+  counts_.squeezed = contact_->CountSqueezed(position_);
+}
+
+/// Ends the step, or the part of it, if not too much is stopped on its way, or no more may be split. Else false, and
+/// all is as it began.
+bool FabricEngine::TryMove(bool maySplit) {
   previous_ = next_;
   const std::vector<Vec3>& ahead = previous_;
-  SafeMoveReport report = contact_->Move(position_, next_);
+  SafeMoveReport report = contact_->Move(position_, next_, maySplit);
   const double wanted = report.wanted;
   const double mostCut = kMostCut * static_cast<double>(position_.size());
   for (int round = 1; round < kMostRounds; ++round) {
     const bool many = round == 1 && static_cast<double>(report.cut) > mostCut;
-    if (!many && report.worst <= kMostStopped * contact_->distance()) break;
+    if (!report.gaveUp && !many && report.worst <= kMostStopped * contact_->distance()) break;
     const bool firm = round > 1 && report.worst > contact_->distance();
+    if (maySplit && (firm || report.gaveUp)) return Rewind();
     // What was met on the way has its plane now, and what would be met on the rest of it.
     position_ = next_;
     contact_->FindPlanes(begin_, position_, ahead, free_, h_, firm);
-    for (const Pin& pin : pins_.All()) next_[Index(pin.point)] = pin.target;
+    for (std::size_t p = 0; p < pinTo_.size(); ++p) next_[Index(pins_.All()[p].point)] = pinTo_[p];
     Minimise(std::max(kMoreIterations, scene_.simulation.newtonIterations / 2));
-    report = contact_->Move(position_, next_);
+    report = contact_->Move(position_, next_, maySplit && round + 1 < kMostRounds);
   }
-  const double lost = report.lost;
+  if (maySplit && StretchesSuddenly()) return Rewind();
+  counts_.lostWay += report.lost;
+  counts_.wantedWay += wanted;
   previous_ = begin_;
   std::swap(position_, next_);
   contact_->End(position_);
@@ -244,11 +286,53 @@ void FabricEngine::Move() {
     if (!contact.active) continue;
     ++(contact.key.kind == ContactKey::Kind::Shape ? counts_.colliderContacts : counts_.selfContacts);
   }
-  counts_.lostWay += lost;
-  counts_.wantedWay += wanted;
-  counts_.intersections = contact_->tangled();
-  counts_.squeezed = contact_->CountSqueezed(position_);
   YieldFolds();
+  return true;
+}
+
+/// Puts all where the step, or the part of it, begins. False.
+bool FabricEngine::Rewind() {
+  position_ = begin_;
+  previous_ = before_;
+  contact_->Rewind();
+  return false;
+}
+
+/// Whether a triangle is much longer in next_ than as the step began.
+bool FabricEngine::StretchesSuddenly() const {
+  std::atomic<bool> suddenly = false;
+  constexpr double kSquare = kMostStretching * kMostStretching;
+  ForRange(executor_, model_.triangles.size(), [&](int t) {
+    const double now = SquaredStretch(Index(t), next_);
+    if (now > kSquare && now > kSquare * SquaredStretch(Index(t), begin_)) suddenly = true;
+  });
+  return suddenly;
+}
+
+/// Does what lies between two shares of the whole step in parts: each as long a step of its own, or split again.
+void FabricEngine::SplitStep(double from, double to, int depth) {
+  ++counts_.splits;
+  const auto setLength = [&](double h) {
+    for (std::size_t v = 0; v < position_.size(); ++v)
+      previous_[v] = position_[v] - (position_[v] - previous_[v]) * (h / h_);
+    h_ = h;
+    solver_.SetStep(h);
+  };
+  setLength(h_ / kParts);
+  for (int part = 0; part < kParts; ++part) {
+    const double begin = from + (to - from) * part / kParts;
+    const double end = part + 1 < kParts ? from + (to - from) * (part + 1) / kParts : to;
+    const double time = time_ - scene_.TimeStep() * (1 - end);
+    for (std::size_t p = 0; p < pinTo_.size(); ++p)
+      pinTo_[p] = pinFrom_[p] + (pins_.All()[p].target - pinFrom_[p]) * end;
+    contact_->MoveColliders(scene_, time);
+    Predict();
+    Blow(time);
+    Hold();
+    Solve();
+    if (!TryMove(depth < kMostSplits)) SplitStep(begin, end, depth + 1);
+  }
+  setLength(h_ * kParts);
 }
 
 void FabricEngine::CollideBall(Ball& ball) {
@@ -336,16 +420,21 @@ VertexRef FabricEngine::RefOf(int vertex) const {
   return {static_cast<int>(cloth - model_.firstVertex.begin()), vertex - *cloth};
 }
 
+/// The square of the larger singular value of a triangle's deformation gradient.
+double FabricEngine::SquaredStretch(std::size_t t, std::span<const Vec3> y) const {
+  const Triangle& triangle = model_.triangles[t];
+  const auto x = [&](std::int32_t v) { return From<double>(y[Index(v)]); };
+  const DeformationGradient<double> f = Deformation(model_.rest[t], x(triangle.a), x(triangle.b), x(triangle.c));
+  const double uu = Dot(f.u, f.u), vv = Dot(f.v, f.v), uv = Dot(f.u, f.v);
+  return 0.5 * (uu + vv) + std::sqrt(0.25 * (uu - vv) * (uu - vv) + uv * uv);
+}
+
 Stretch FabricEngine::GreatestStretch() const {
   double greatest = 0;  // squared
   int at = -1;
   for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
-    const Triangle& tri = model_.triangles[t];
-    const auto x = [&](std::int32_t v) { return From<double>(position_[Index(v)]); };
-    const DeformationGradient<double> f = Deformation(model_.rest[t], x(tri.a), x(tri.b), x(tri.c));
-    const double uu = Dot(f.u, f.u), vv = Dot(f.v, f.v), uv = Dot(f.u, f.v);
-    const double square = 0.5 * (uu + vv) + std::sqrt(0.25 * (uu - vv) * (uu - vv) + uv * uv);
-    if (square > greatest) greatest = square, at = tri.a;
+    const double square = SquaredStretch(t, position_);
+    if (square > greatest) greatest = square, at = model_.triangles[t].a;
   }
   if (at < 0) return {};
   return {std::sqrt(greatest), RefOf(at)};

@@ -41,7 +41,8 @@ class FabricEngine {
   void AddForces(int cloth, std::span<const Vec3> forces);
   /// Where all forces balance.
   void Solve();
-  /// Goes there, as far as nothing passes through anything.
+  /// Goes there, as far as nothing passes through anything. Where too much is stopped on its way the step is done over
+  /// in parts.
   void Move();
   /// Pushes cloth and ball apart by their masses, momentum kept.
   void CollideBall(Ball& ball);
@@ -80,12 +81,19 @@ class FabricEngine {
 
  private:
   void SetUp();
+  void Predict();
   void Minimise(int iterations);
+  bool TryMove(bool maySplit);
+  bool Rewind();
+  bool StretchesSuddenly() const;
+  double SquaredStretch(std::size_t triangle, std::span<const Vec3> y) const;
+  void SplitStep(double from, double to, int depth);
   void UpdatePins();
   void StartFolds();
   void YieldFolds();
-  void Hold(std::span<const Handle> handles);
-  void Blow(double time, std::span<const Gust> gusts);
+  void HoldPins();
+  void Hold();
+  void Blow(double time);
   VertexRef RefOf(int vertex) const;
 
   const Executor& executor_;
@@ -98,7 +106,13 @@ class FabricEngine {
   Pins pins_;
   std::vector<std::uint8_t> free_;  // per vertex
   std::vector<Vec3> position_, previous_;
-  std::vector<Vec3> predicted_, next_, begin_;
+  std::vector<Vec3> predicted_, next_;
+  std::vector<Vec3> begin_, before_;   // Where the step, or the part of it, begins, and where all was one before.
+  std::vector<Vec3> pinFrom_, pinTo_;  // per pin: where it is as the whole step begins, and as the part ends
+  // What acts in the step:
+  std::vector<Gust> gusts_;
+  std::vector<Handle> handles_;
+  std::vector<Vec3> given_;  // More forces [N]; none, or one per vertex.
   std::vector<VertexLoad> loads_;
   std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
   std::vector<std::int32_t> touched_;  // of CollideBall

@@ -25,18 +25,6 @@ std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Bending, and masses over h^2 on the diagonal.
-ScalarMatrix ConstantPart(const FabricModel& model, double h) {
-  ScalarMatrix constant = model.plates;
-  for (int row = 0; row < model.vertexCount; ++row) {
-    const auto begin = constant.column.begin() + constant.first[Index(row)];
-    const auto end = constant.column.begin() + constant.first[Index(row) + 1];
-    const auto diagonal = std::lower_bound(begin, end, row) - constant.column.begin();
-    constant.value[Index(diagonal)] += model.mass[Index(row)] / (h * h);
-  }
-  return constant;
-}
-
 }  // namespace
 
 NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
@@ -55,10 +43,26 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
   std::vector<std::uint8_t> pinned(free.size());
   for (std::size_t v = 0; v < free.size(); ++v) pinned[v] = free[v] ? 0 : 1;
   objective_.TakeMaterials();
-  matrix_.SetUp(pattern_, ConstantPart(model_, h), pinned);
+  const ScalarMatrix& plates = model_.plates;
+  matrix_.SetUp(pattern_, plates, pinned);
+  plateDiagonal_.resize(Index(model_.vertexCount));
+  for (int row = 0; row < model_.vertexCount; ++row) {
+    const auto begin = plates.column.begin() + plates.first[Index(row)];
+    const auto end = plates.column.begin() + plates.first[Index(row) + 1];
+    plateDiagonal_[Index(row)] = plates.value[Index(std::lower_bound(begin, end, row) - plates.column.begin())];
+  }
+  SetStep(h);
   const MaterialMesh material{model_.triangles, model_.chartTriangles, model_.chart};
   multigrid_.SetUp(matrix_, MakeHierarchy(pattern_, material, pinned));
   conjugateGradient_.SetUp(model_.vertexCount);
+}
+
+/// Inertia is all that the length of a step changes in the constant part: masses over h^2 on the diagonal.
+void NewtonSolver::SetStep(double h) {
+  for (int row = 0; row < model_.vertexCount; ++row) {
+    const double inertia = model_.mass[Index(row)] / (h * h);
+    matrix_.SetConstant(row, static_cast<Real>(plateDiagonal_[Index(row)] + inertia));
+  }
 }
 
 NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonSettings& settings) {

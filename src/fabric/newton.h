@@ -38,6 +38,8 @@ class NewtonSolver {
 
   Objective& objective() { return objective_; }
 
+  /// Steps are `h` [s] long from now on.
+  void SetStep(double h);
   /// Goes from y down in energy, at most to the minimum. The objective must have begun the step; `energy` is what it
   /// gave for y, when it was asked last.
   NewtonResult Solve(std::span<Vec3> y, double energy, const NewtonSettings& settings);
@@ -53,6 +55,7 @@ class NewtonSolver {
   SystemMatrix matrix_;
   Multigrid multigrid_;
   ConjugateGradient conjugateGradient_;
+  std::vector<double> plateDiagonal_;  // per vertex [N/m]
   std::vector<Vec3> gradient_, trial_;
   RealVector right_, direction_;
   double trialEnergy_ = 0;

@@ -101,6 +101,10 @@ class SystemMatrix {
   const Real* DiagonalBlock(int row) const { return Block(diagonal_[static_cast<std::size_t>(row)]); }
   /// Per block what S has there: who writes all blocks himself adds it to their diagonals, and needs no Reset.
   std::span<const Real> constant() const { return constant_; }
+  /// Sets what S has on the diagonal of a row.
+  void SetConstant(int row, Real value) {
+    constant_[static_cast<std::size_t>(diagonal_[static_cast<std::size_t>(row)])] = value;
+  }
   /// Sets E. Allocates only when there is more of it than ever before. Leaving it out keeps E.
   void SetExtra(std::span<const ExtraTerm> terms, const Executor& executor);
   /// Ends the filling: clears what belongs to pinned vertices and inverts the diagonal.

@@ -22,6 +22,7 @@ struct EngineCounts {
   std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
   std::int64_t intersections = 0, squeezed = 0;  ///< As the last step left them.
   double lostWay = 0, wantedWay = 0;             ///< Of all vertices [m].
+  int splits = 0;
   int newtonIterations = 0, linearIterations = 0;
   double residual = 0;
   bool converged = true;
