@@ -24,8 +24,8 @@ namespace percale::fabric {
 
 class FabricEngine {
  public:
-  /// `meshes`: one per cloth. The executor must outlive the engine.
-  FabricEngine(const Scene& scene, std::span<const RestMesh> meshes, const Executor& executor);
+  /// `model`: of the scene, by BuildModel. The executor must outlive the engine.
+  FabricEngine(const Scene& scene, FabricModel model, const Executor& executor);
 
   /// Takes settings for the same cloths; the state stays.
   void Configure(const Scene& scene);
@@ -86,6 +86,7 @@ class FabricEngine {
   void YieldFolds();
   void Hold(std::span<const Handle> handles);
   void Blow(double time, std::span<const Gust> gusts);
+  std::span<VertexLoad> Loads();
   VertexRef RefOf(int vertex) const;
 
   const Executor& executor_;
@@ -99,7 +100,7 @@ class FabricEngine {
   std::vector<std::uint8_t> free_;  // per vertex
   std::vector<Vec3> position_, previous_;
   std::vector<Vec3> predicted_, next_, begin_;
-  std::vector<VertexLoad> loads_;
+  std::vector<VertexLoad> loads_;      // none in a step in which nothing loads
   std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
   std::vector<std::int32_t> touched_;  // of CollideBall
   std::vector<Fold> folds_;            // per hinge; none where none may set

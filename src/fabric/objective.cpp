@@ -35,8 +35,7 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
       batches_.push_back({c, t, std::min(t + kRowsPerChunk, end)});
     }
   }
-  for (std::vector<double>* padded : {&area_, &inverse_[0], &inverse_[1], &inverse_[2], &inverse_[3], &startStrain_[0],
-                                      &startStrain_[1], &startStrain_[2], &buckling_}) {
+  for (std::vector<double>* padded : {&area_, &inverse_[0], &inverse_[1], &inverse_[2], &inverse_[3], &buckling_}) {
     padded->assign(triangles + kTrianglePad, 0);
   }
   for (std::size_t t = 0; t < triangles; ++t) {
@@ -54,6 +53,9 @@ void Objective::TakeMaterials() {
   // A patch counts as so much more membrane.
   for (std::size_t t = 0; t < model_.rest.size(); ++t) area_[t] = model_.rest[t].area * model_.strength[t];
   std::copy(model_.buckling.begin(), model_.buckling.end(), buckling_.begin());
+  const bool damped = std::any_of(model_.membranes.begin(), model_.membranes.end(),
+                                  [](const Membrane& membrane) { return membrane.damping > 0; });
+  for (std::vector<double>& padded : startStrain_) padded.resize(damped ? area_.size() : 0);
   const std::size_t hinges = model_.anyHinges ? model_.hinges.size() : 0;
   for (std::vector<double>* perHinge : {&startAngle_, &angle_, &moment_}) perHinge->resize(hinges);
   hinge_.resize(hinges);
@@ -101,11 +103,15 @@ double Objective::Energy(std::span<const Vec3> y) {
     double sum = 0;
     for (int v = begin; v < end; ++v) {
       if (!step_.free[Index(v)]) continue;
-      const Vec3 off = y[Index(v)] - step_.predicted[Index(v)], way = y[Index(v)] - step_.start[Index(v)];
-      const VertexLoad& load = step_.loads[Index(v)];
-      const Vector3<double> w = From<double>(way);
-      sum += 0.5 * model_.mass[Index(v)] * perStep * Dot(off, off) + 0.5 * Dot(w, load.stiffness * w) -
-             Dot(load.force, way);
+      const Vec3 off = y[Index(v)] - step_.predicted[Index(v)];
+      double cost = 0.5 * model_.mass[Index(v)] * perStep * Dot(off, off);
+      if (!step_.loads.empty()) {
+        const VertexLoad& load = step_.loads[Index(v)];
+        const Vec3 way = y[Index(v)] - step_.start[Index(v)];
+        const Vector3<double> w = From<double>(way);
+        cost = cost + 0.5 * Dot(w, load.stiffness * w) - Dot(load.force, way);
+      }
+      sum += cost;
     }
     return sum;
   });
@@ -273,7 +279,7 @@ double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gr
                        .transposed = transposed_.entry.data(),
                        .hessian = triangleHessian_.data(),
                        .blocks = matrix.Block(0)});
-    for (int v = begin; v < end; ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);
+    for (int v = begin; v < end && !step_.loads.empty(); ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);
   });
   for (const FabricTether& tether : model_.tethers) addToDiagonal(tether.vertex, Pull(tether, y).hessian);
   double change = 0;
@@ -308,9 +314,12 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient) {
       return;
     }
     const Vec3 off = y[Index(v)] - step_.predicted[Index(v)];
-    const VertexLoad& load = step_.loads[Index(v)];
-    Vec3 sum = off * (model_.mass[Index(v)] * perStep) - load.force +
-               ToVec3(load.stiffness * From<double>(y[Index(v)] - step_.start[Index(v)]));
+    Vec3 sum = off * (model_.mass[Index(v)] * perStep);
+    if (!step_.loads.empty()) {
+      const VertexLoad& load = step_.loads[Index(v)];
+      sum -= load.force;
+      sum += ToVec3(load.stiffness * From<double>(y[Index(v)] - step_.start[Index(v)]));
+    }
     for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
       sum += triangleGradient_[Index(model_.corners.entry[Index(e)])];
     }

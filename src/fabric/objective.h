@@ -24,7 +24,7 @@ struct StepSettings {
   double h = 0;                        ///< Length [s].
   std::span<const Vec3> start;         ///< x, where the step begins [m].
   std::span<const Vec3> predicted;     ///< x~, where inertia and gravity alone would lead [m].
-  std::span<const VertexLoad> loads;   ///< Per vertex.
+  std::span<const VertexLoad> loads;   ///< Per vertex; or nothing: none.
   std::span<const std::uint8_t> free;  ///< Per vertex: 0 for pins, whose gradient is zero.
 };
 
