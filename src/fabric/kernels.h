@@ -36,8 +36,10 @@ struct MembraneArgs {
   double* startStrain[3];  ///< Strain at the start of the step, one array per component; padded.
   const double* buckling;  ///< Compression that a second derivative may keep, over `compression` [N s/m]; padded.
   double compression;      ///< How often buckling, over the length of the step [1/s].
-  Vec3* gradient;          ///< Out: by corner a, b, c of each triangle [N].
-  Real* hessian;  ///< Out: per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m]; then one Real.
+  // Out, for triangles from `outFirst` on:
+  int outFirst;
+  Vec3* gradient;  ///< By corner a, b, c of each triangle [N].
+  Real* hessian;   ///< Per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m]; then one Real.
 };
 
 /// What pulls at a vertex beside gravity over one step, quadratic in its way w = y - x: energy ½ wᵀ B w - f·w [J].

@@ -63,6 +63,7 @@ struct Triangles {
             .startStrain = {start[0].data(), start[1].data(), start[2].data()},
             .buckling = buckling.data(),
             .compression = 90,
+            .outFirst = 0,
             .gradient = gradient.data(),
             .hessian = hessian.data()};
   }
