@@ -46,7 +46,6 @@ struct Multigrid::Level {
   // each block that is not where in its row of A it goes; per node, where the latter start.
   std::vector<Slot> skip, slot;
   std::vector<std::int32_t> slotFirst;
-  std::vector<std::int32_t> mirror;  // per block of A: the one that it is the transpose of, -1 if none
 
   SystemMatrix matrix;
   RealVector right, solution, scratch;  // vectors over its nodes
@@ -201,19 +200,14 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
         const auto diagonal = std::lower_bound(begin, end, node);
         level.skip.push_back(static_cast<Slot>(diagonal - begin));
         for (auto at = diagonal; at != end; ++at) {
-          const std::int32_t place = coarse.Find(node, *at) - coarse.first[node];
+          const std::int32_t place = coarse.Find(node, *at) - level.matrix.Diagonal(node);
           assert(place >= 0 && place <= 0xffff);
           level.slot.push_back(static_cast<Slot>(place));
         }
       }
-      for (std::int32_t k = coarse.first[node]; k < coarse.first[node + 1]; ++k) {
-        const std::int32_t other = coarse.column[k];
-        level.mirror.push_back(other < node ? coarse.Find(other, node) : -1);
-      }
     }
 
     for (std::vector<Slot>* slots : {&level.productSlot, &level.slot, &level.skip}) slots->shrink_to_fit();
-    level.mirror.shrink_to_fit();
 
     level.right.assign(VectorLength(P.nodes), 0);
     level.solution.assign(VectorLength(P.nodes), 0);
@@ -265,8 +259,18 @@ void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Execu
       if (productBegin == productEnd) continue;
       Real* __restrict to = product_.data() + 9 * (shift + productBegin);
       std::fill_n(to, 9 * static_cast<std::size_t>(productEnd - productBegin), Real{0});
+      const Real* stored = fine.DiagonalBlock(row);
+      const std::int32_t* mirror = fine.mirror().data() + (pattern.first[row] - fine.storedFirst()[row]);
       for (std::int32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
-        const Real* __restrict block = fine.Block(k);
+        const Real* block = stored;
+        Real transposed[9];
+        if (pattern.column[k] < row) {
+          const Real* from = fine.Block(*mirror++);
+          for (int c = 0; c < 9; ++c) transposed[c] = from[c % 3 * 3 + c / 3];
+          block = transposed;
+        } else {
+          stored += 9;
+        }
         const std::int32_t other = pattern.column[k];
         for (std::int32_t e = p.first[other]; e < p.first[other + 1]; ++e) {
           AddScaled(to + 9 * static_cast<std::size_t>(*slot++), p.weight[e], block);
@@ -276,11 +280,10 @@ void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Execu
   };
   // A = P' T on and right of the diagonal, on top of the constant part.
   level.matrix.Reset(executor);
-  const BlockPattern& coarse = level.matrix.pattern();
   const auto sum = [&](int begin, int end) {
     const Slot* __restrict slot = level.slot.data() + level.slotFirst[begin];
     for (int node = begin; node < end; ++node) {
-      Real* __restrict to = level.matrix.Block(coarse.first[node]);
+      Real* __restrict to = level.matrix.DiagonalBlock(node);
       for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
         const Real weight = level.rowWeight[e];
         const int row = level.row[e];
@@ -301,15 +304,6 @@ void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Execu
       sum(from, std::min(from + kNodeChunk, begin + count));
     });
   }
-  executor.ForChunks(Chunks(p.nodes), [&](int chunk) {
-    const int begin = chunk * kRowsPerChunk, end = std::min(p.nodes, begin + kRowsPerChunk);
-    for (std::int32_t k = coarse.first[begin]; k < coarse.first[end]; ++k) {
-      if (level.mirror[k] < 0) continue;
-      const Real* __restrict from = level.matrix.Block(level.mirror[k]);
-      Real* __restrict to = level.matrix.Block(k);
-      for (int c = 0; c < 9; ++c) to[c] = from[c % 3 * 3 + c / 3];
-    }
-  });
 }
 
 /// Fills `to` with `rows` rows: visit(row, part) adds the blocks of one to `part`. Each part sums its share of the rows
@@ -442,8 +436,7 @@ std::size_t Multigrid::MemoryBytes() const {
     bytes += Bytes(level.p.first) + Bytes(level.p.column) + Bytes(level.p.weight) + Bytes(level.rowFirst) +
              Bytes(level.row) + Bytes(level.rowWeight) + Bytes(level.productFirst) + Bytes(level.productSlotFirst) +
              Bytes(level.productSlot) + Bytes(level.skip) + Bytes(level.slot) + Bytes(level.slotFirst) +
-             Bytes(level.mirror) + Bytes(level.right) + Bytes(level.solution) + Bytes(level.scratch) +
-             level.matrix.MemoryBytes();
+             Bytes(level.right) + Bytes(level.solution) + Bytes(level.scratch) + level.matrix.MemoryBytes();
   }
   return bytes;
 }
