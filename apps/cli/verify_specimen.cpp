@@ -119,7 +119,7 @@ MeshRun::MeshRun(Scene scene, RestMesh mesh, const std::vector<std::int32_t>& pi
     : scene_(WithPins(std::move(scene), mesh, pinned)),
       mesh_(std::move(mesh)),
       executor_(1),
-      engine_(scene_, std::span(&mesh_, 1), executor_),
+      engine_(scene_, fabric::BuildModel(scene_, std::span(&mesh_, 1)), executor_),
       positions_(mesh_.positions),
       previous_(mesh_.positions) {}
 

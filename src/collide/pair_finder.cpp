@@ -143,15 +143,16 @@ struct PairFinder::Impl {
   const int leafBlocks;
   const int chunkBlocks;  // of one chunk
   const int chunks;
-  std::vector<std::int32_t> firstItemBlock;     // per leaf: of its edges, then come its triangles and its own vertices
+  // Per leaf that is touched: of its edges, then come its triangles and its own vertices.
+  std::vector<std::int32_t> firstItemBlock;
   AlignedVector<BoxRow> rows;                   // per vertex
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
   std::vector<LeafShape> shapes;                 // per leaf
   AlignedVector<TriangleShapes> triangleShapes;  // per leaf
   std::vector<std::uint8_t> areAllApart;         // per leaf, as FlatRegions has it
-  AlignedVector<BoxBlock> itemBoxes;
-  std::vector<std::uint8_t> isTouched;  // per leaf: may have pairs
+  AlignedVector<BoxBlock> itemBoxes;             // of leaves that are touched: they take more memory than all else
+  std::vector<std::uint8_t> isTouched;           // per leaf: may have pairs
   ChunkLists<LeafPair> leafPairs;
   ChunkLists<VertexQuad> vertexTriangleLists, edgeEdgeLists;
   Pairs vertexTriangle, edgeEdge;
@@ -166,6 +167,7 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       leafBlocks(Blocks(clusters.leaves())),
       chunkBlocks(std::max(kLeastChunkBlocks, (leafBlocks + kMostChunks - 1) / kMostChunks)),
       chunks((leafBlocks + chunkBlocks - 1) / chunkBlocks),
+      firstItemBlock(Index(clusters.leaves())),
       rows(m.body.size()),
       shapes(Index(clusters.clothLeaves)),
       triangleShapes(Index(clusters.clothLeaves)),
@@ -183,13 +185,6 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
     levels.emplace_back(Index(Blocks(static_cast<std::int64_t>(levels.back().size()))), empty);
   } while (levels.back().size() > 1);
   for (const auto& level : levels) levelBlocks.push_back(level.data());
-  firstItemBlock.push_back(0);
-  for (int leaf = 0; leaf < clusters.leaves(); ++leaf) {
-    const auto count = [](const auto& items) { return Blocks(static_cast<std::int64_t>(items.size())); };
-    firstItemBlock.push_back(firstItemBlock.back() + count(clusters.Edges(leaf)) + count(clusters.OwnVertices(leaf)) +
-                             count(clusters.Triangles(leaf)));
-  }
-  itemBoxes.assign(Index(firstItemBlock.back()), empty);
 }
 
 void PairFinder::Impl::BoxVertices(const MeshMotion& motion, std::span<const double> reach) {
@@ -282,6 +277,14 @@ void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPai
       for (const LeafPair& pair : pairs) isTouched[Index(pair.a)] = isTouched[Index(pair.b)] = 1;
     });
   }
+  std::int32_t blocks = 0;
+  for (int leaf = 0; leaf < clusters.leaves(); ++leaf) {
+    if (isTouched[Index(leaf)] == 0) continue;
+    const auto count = [](const auto& items) { return Blocks(static_cast<std::int64_t>(items.size())); };
+    firstItemBlock[Index(leaf)] = blocks;
+    blocks += count(clusters.Edges(leaf)) + count(clusters.OwnVertices(leaf)) + count(clusters.Triangles(leaf));
+  }
+  if (itemBoxes.size() < Index(blocks)) itemBoxes.resize(Index(blocks) * 3 / 2);
 }
 
 LeafItems PairFinder::Impl::ItemsOf(int leaf) const {
@@ -304,6 +307,8 @@ void PairFinder::Impl::BoxItems() {
       BoxBlock* to = itemBoxes.data() + firstItemBlock[Index(leaf)];
       const auto box = [&](const std::int32_t* corners, int cornersPerItem, std::size_t items) {
         const int count = static_cast<int>(items);
+        if (count == 0) return;
+        for (auto& extents : to[Blocks(count) - 1].extent) std::fill_n(extents, kLanes, -INFINITY);
         kernels.itemBoxes({corners, cornersPerItem, count, rows.data(), to});
         to += Blocks(count);
       };

@@ -37,17 +37,16 @@ bool InBounds(const Vec3& x) {
 
 }  // namespace
 
-FabricEngine::FabricEngine(const Scene& scene, std::span<const RestMesh> meshes, const Executor& executor)
+FabricEngine::FabricEngine(const Scene& scene, FabricModel model, const Executor& executor)
     : executor_(executor),
       scene_(scene),
-      model_(BuildModel(scene, meshes)),
+      model_(std::move(model)),
       solver_(model_, executor),
       contact_(std::make_unique<ContactStep>(scene, model_, executor)) {
   solver_.objective().SetContacts(&contact_->contacts());
   const std::size_t count = Index(model_.vertexCount);
   free_.assign(count, 1);
   position_ = previous_ = predicted_ = next_ = begin_ = before_ = model_.start;
-  loads_.resize(count);
   SetUp();
 }
 
@@ -139,9 +138,17 @@ void FabricEngine::Predict() {
   ForRange(executor_, position_.size(), [&](int vertex) {
     const std::size_t v = Index(vertex);
     predicted_[v] = position_[v] + (position_[v] - previous_[v]) + fall;
-    loads_[v] = {};
-    if (!given_.empty()) loads_[v].force = given_[v];
   });
+  loads_.clear();
+  if (given_.empty()) return;
+  const std::span<VertexLoad> loads = Loads();
+  for (std::size_t v = 0; v < given_.size(); ++v) loads[v].force = given_[v];
+}
+
+/// The loads of the step at hand, for more to be added.
+std::span<VertexLoad> FabricEngine::Loads() {
+  loads_.resize(position_.size());
+  return loads_;
 }
 
 /// Drag and lift of the air on each triangle, a third of it on each corner, which resists by its own way.
@@ -171,11 +178,12 @@ void FabricEngine::Blow(double time) {
                              .wind = air,
                              .load = windLoads_.data()});
   });
+  const std::span<VertexLoad> loads = Loads();
   ForRange(executor_, position_.size(), [&](int v) {
     for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
       const VertexLoad& load = windLoads_[Index(model_.corners.entry[Index(e)] / 3)];
-      loads_[Index(v)].stiffness += load.stiffness;
-      loads_[Index(v)].force += load.force;
+      loads[Index(v)].stiffness += load.stiffness;
+      loads[Index(v)].force += load.force;
     }
   });
 }
@@ -183,9 +191,10 @@ void FabricEngine::Blow(double time) {
 void FabricEngine::AddForces(int cloth, std::span<const Vec3> forces) {
   const std::size_t first = Index(model_.firstVertex[Index(cloth)]);
   given_.resize(position_.size());
+  const std::span<VertexLoad> loads = Loads().subspan(first);
   for (std::size_t v = 0; v < forces.size(); ++v) {
     given_[first + v] += forces[v];
-    loads_[first + v].force += forces[v];
+    loads[v].force += forces[v];
   }
 }
 
@@ -205,13 +214,14 @@ void FabricEngine::Hold() {
     const int centre = first + handle.vertex;
     if (!free_[Index(centre)]) continue;
     const Vec3 way = handle.target - position_[Index(centre)];
+    const std::span<VertexLoad> loads = Loads();
     const double w = 2 * std::numbers::pi * handle.frequency;
     for (int v = first; v < end; ++v) {
       const double share = GripShare(handle, model_.start[Index(v)] - model_.start[Index(centre)]);
       if (share == 0 || !free_[Index(v)]) continue;
       const double stiffness = model_.mass[Index(v)] * share * w * w;
-      loads_[Index(v)].stiffness += Diagonal(stiffness + 2 * model_.mass[Index(v)] * share * w / h_);
-      loads_[Index(v)].force += way * stiffness;
+      loads[Index(v)].stiffness += Diagonal(stiffness + 2 * model_.mass[Index(v)] * share * w / h_);
+      loads[Index(v)].force += way * stiffness;
     }
   }
 }

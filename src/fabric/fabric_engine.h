@@ -24,8 +24,8 @@ namespace percale::fabric {
 
 class FabricEngine {
  public:
-  /// `meshes`: one per cloth. The executor must outlive the engine.
-  FabricEngine(const Scene& scene, std::span<const RestMesh> meshes, const Executor& executor);
+  /// `model`: of the scene, by BuildModel. The executor must outlive the engine.
+  FabricEngine(const Scene& scene, FabricModel model, const Executor& executor);
 
   /// Takes settings for the same cloths; the state stays.
   void Configure(const Scene& scene);
@@ -94,6 +94,7 @@ class FabricEngine {
   void HoldPins();
   void Hold();
   void Blow(double time);
+  std::span<VertexLoad> Loads();
   VertexRef RefOf(int vertex) const;
 
   const Executor& executor_;
@@ -112,8 +113,8 @@ class FabricEngine {
   // What acts in the step:
   std::vector<Gust> gusts_;
   std::vector<Handle> handles_;
-  std::vector<Vec3> given_;  // More forces [N]; none, or one per vertex.
-  std::vector<VertexLoad> loads_;
+  std::vector<Vec3> given_;            // More forces [N]; none, or one per vertex.
+  std::vector<VertexLoad> loads_;      // none in a step in which nothing loads
   std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
   std::vector<std::int32_t> touched_;  // of CollideBall
   std::vector<Fold> folds_;            // per hinge; none where none may set

@@ -56,32 +56,6 @@ void Append(const RestMesh& mesh, double warpAngle, FabricModel& model) {
   for (const Vec2& p : mesh.material) model.material.push_back(AlongWarp(p, warpAngle));
 }
 
-/// Hinges, and which belong to which triangle.
-void FindHinges(const Topology& topology, FabricModel& model) {
-  std::vector<std::int32_t> hingeOfEdge(topology.edges.size(), -1);
-  model.hinges.reserve(topology.edges.size());
-  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
-    const auto& [t0, t1] = topology.edgeTriangles[e];
-    if (t0 < 0 || t1 < 0) continue;
-    hingeOfEdge[e] = static_cast<std::int32_t>(model.hinges.size());
-    FabricHinge hinge{};
-    hinge.vertex[0] = topology.edges[e].a, hinge.vertex[1] = topology.edges[e].b;
-    hinge.vertex[2] = topology.edgeOpposite[e][0], hinge.vertex[3] = topology.edgeOpposite[e][1];
-    hinge.triangle[0] = t0, hinge.triangle[1] = t1;
-    model.hinges.push_back(hinge);
-  }
-  for (const int first : model.firstVertex) {
-    const auto at = std::lower_bound(model.hinges.begin(), model.hinges.end(), first,
-                                     [](const FabricHinge& hinge, int v) { return hinge.vertex[0] < v; });
-    model.firstHinge.push_back(static_cast<int>(at - model.hinges.begin()));
-  }
-  model.hingeOf.resize(model.triangles.size());
-  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k)
-      model.hingeOf[t][k] = hingeOfEdge[Index(topology.sideEdges[3 * t + (k + 1) % 3])];
-  }
-}
-
 /// A hinge's four vertices, unfolded into the plane: the edge along x.
 void Unfold(const FabricModel& model, FabricHinge& hinge) {
   Vec3 at[4];
@@ -103,6 +77,37 @@ void Unfold(const FabricModel& model, FabricHinge& hinge) {
   }
   const Vector3<double> x[4] = {From<double>(at[0]), From<double>(at[1]), From<double>(at[2]), From<double>(at[3])};
   hinge.weights = MakeHingeWeights(x[0], x[1], x[2], x[3]);
+}
+
+/// Hinges, and what they belong to.
+void FindHinges(FabricModel& model) {
+  const Topology topology = BuildTopology(Index(model.vertexCount), model.triangles);
+  std::vector<std::int32_t> hingeOfEdge(topology.edges.size(), -1);
+  model.hinges.reserve(topology.edges.size());
+  for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+    const auto& [t0, t1] = topology.edgeTriangles[e];
+    if (t0 < 0 || t1 < 0) continue;
+    hingeOfEdge[e] = static_cast<std::int32_t>(model.hinges.size());
+    FabricHinge hinge{};
+    hinge.vertex[0] = topology.edges[e].a, hinge.vertex[1] = topology.edges[e].b;
+    hinge.vertex[2] = topology.edgeOpposite[e][0], hinge.vertex[3] = topology.edgeOpposite[e][1];
+    hinge.triangle[0] = t0, hinge.triangle[1] = t1;
+    model.hinges.push_back(hinge);
+  }
+  model.firstHinge.clear();
+  for (const int first : model.firstVertex) {
+    const auto at = std::lower_bound(model.hinges.begin(), model.hinges.end(), first,
+                                     [](const FabricHinge& hinge, int v) { return hinge.vertex[0] < v; });
+    model.firstHinge.push_back(static_cast<int>(at - model.hinges.begin()));
+  }
+  model.hingeOf.resize(model.triangles.size());
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k)
+      model.hingeOf[t][k] = hingeOfEdge[Index(topology.sideEdges[3 * t + (k + 1) % 3])];
+  }
+  for (FabricHinge& hinge : model.hinges) Unfold(model, hinge);
+  model.hingeEnds = ListBy(model.vertexCount, 4 * model.hinges.size(),
+                           [&](std::size_t e) { return model.hinges[e / 4].vertex[e % 4]; });
 }
 
 /// A triangle's bending as a quadratic of the positions of its corners and of the vertices across its edges.
@@ -277,17 +282,17 @@ FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes) {
         MakeRestTriangle<double>(Corner(model, triangle, 0), Corner(model, triangle, 1), Corner(model, triangle, 2)));
   }
   FindChart(model);
-  const Topology topology = BuildTopology(Index(model.vertexCount), model.triangles);
-  FindHinges(topology, model);
-  for (FabricHinge& hinge : model.hinges) Unfold(model, hinge);
-  model.corners = {topology.cornerBegin, topology.corners};
-  model.hingeEnds = ListBy(model.vertexCount, 4 * model.hinges.size(),
-                           [&](std::size_t e) { return model.hinges[e / 4].vertex[e % 4]; });
+  model.corners = ListBy(model.vertexCount, 3 * model.triangles.size(), [&](std::size_t e) {
+    const Triangle& t = model.triangles[e / 3];
+    return e % 3 == 0 ? t.a : e % 3 == 1 ? t.b : t.c;
+  });
   TakeMaterials(scene, model);
   return model;
 }
 
 void TakeMaterials(const Scene& scene, FabricModel& model) {
+  const bool hadHinges = !model.hinges.empty();
+  if (!hadHinges) FindHinges(model);
   model.membranes.clear();
   model.pressure.clear();
   model.bendDamping.clear();
@@ -364,7 +369,14 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
                                  : MakeBendingMatrix(stiffness, points, areaAcross);
   }
   AssemblePlates(model);
-  if (!model.anyHinges) model.bending = {};
+  // Unlike `= {}` these give the memory back. Hinges that ever bent stay, as folds in them may have set.
+  if (!model.anyHinges) model.bending = std::vector<BendingMatrix<double>>();
+  if (!model.anyHinges && !hadHinges) {
+    model.hinges = std::vector<FabricHinge>();
+    model.firstHinge.assign(model.firstVertex.size(), 0);
+    model.hingeOf = std::vector<std::array<std::int32_t, 3>>();
+    model.hingeEnds = Lists();
+  }
   model.buckling.assign(model.triangles.size(), 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& tri = model.triangles[t];

@@ -72,8 +72,8 @@ struct FabricModel {
                                            ///< triangles do not lie side by side in the material.
   std::vector<std::int32_t> clothOf;       ///< Per triangle.
   std::vector<RestTriangle<double>> rest;  ///< Per triangle.
-  std::vector<FabricHinge> hinges;
-  std::vector<int> firstHinge;                       ///< Per cloth, and the end.
+  std::vector<FabricHinge> hinges;         ///< None of these four where no cloth bends by them, or did before.
+  std::vector<int> firstHinge;             ///< Per cloth, and the end.
   std::vector<std::array<std::int32_t, 3>> hingeOf;  ///< Per triangle those opposite of its corners; -1 at a border.
   Lists corners;                                     ///< Per vertex its corners: 3 * triangle + 0, 1, 2, ascending.
   Lists hingeEnds;                                   ///< Per vertex its places in hinges: 4 * hinge + 0..3, ascending.

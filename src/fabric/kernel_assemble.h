@@ -40,21 +40,21 @@ inline void StoreBlock(Columns a, Real s, Real* block) {
 void Assemble(const AssembleArgs& a) {
   for (int row = a.begin; row < a.end; ++row) {
     Columns sum;
-    std::int32_t diagonal = -1;
+    std::int32_t next = a.storedFirst[row] + 1;
     for (std::int32_t k = a.first[row]; k < a.first[row + 1]; ++k) {
-      if (a.column[k] == row) {
-        diagonal = k;
-        continue;
-      }
+      if (a.column[k] == row) continue;
       Columns block;
       for (std::int32_t e = a.sameFirst[k]; e < a.sameFirst[k + 1]; ++e) block += LoadColumns(a.hessian + a.same[e]);
       for (std::int32_t e = a.transposedFirst[k]; e < a.transposedFirst[k + 1]; ++e) {
         block += Transposed(LoadColumns(a.hessian + a.transposed[e]));
       }
       sum += block;
-      StoreBlock(block, a.constant[k], a.blocks + 9 * static_cast<std::int64_t>(k));
+      if (a.column[k] < row) continue;
+      StoreBlock(block, a.constant[next], a.blocks + 9 * static_cast<std::int64_t>(next));
+      ++next;
     }
     for (Floats4& c : sum.c) c = -c;
+    const std::int32_t diagonal = a.storedFirst[row];
     StoreBlock(sum, a.constant[diagonal], a.blocks + 9 * static_cast<std::int64_t>(diagonal));
   }
 }

@@ -134,7 +134,7 @@ template <bool withTangent>
       gradient.corner[k].z.Store(lanes[3 * k + 2]);
     }
     for (int i = 0; i < count; ++i) {
-      Vec3* to = a.gradient + 3 * static_cast<std::int64_t>(first + i);
+      Vec3* to = a.gradient + 3 * static_cast<std::int64_t>(first + i - a.outFirst);
       for (int k = 0; k < 3; ++k) {
         to[k].x = lanes[3 * k][i], to[k].y = lanes[3 * k + 1][i], to[k].z = lanes[3 * k + 2][i];
       }
@@ -153,7 +153,7 @@ template <bool withTangent>
         for (int c = 0; c < 9; ++c) hessian.next[k].m[c % 3 * 3 + c / 3].Store(blocks[9 * k + c]);
       }
       for (int i = 0; i < count; ++i) {
-        Real* to = a.hessian + kHessianReals * static_cast<std::int64_t>(first + i);
+        Real* to = a.hessian + kHessianReals * static_cast<std::int64_t>(first + i - a.outFirst);
         for (int k = 0; k < 27; ++k) to[k] = blocks[k][i];
       }
     }

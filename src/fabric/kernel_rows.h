@@ -1,39 +1,61 @@
 // Products of the matrix with a vector. Included by kernels_impl.h inside the namespace of an instruction set; never
 // elsewhere.
 
-/// A sum of products of a block with a vector of three. The products of the nine numbers are summed apart and added up
-/// at the end, on all processors in the same order.
+/// A sum of products of blocks, and of transposes of blocks, with vectors of three. The products of the nine numbers
+/// are summed apart and added up at the end, on all processors in the same order.
 #if defined(__AVX2__)
 class BlockSum {
  public:
   void Add(const Real* block, const Real* v) {
     const __m256i eight = _mm256_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2);
-    const __m256 spread = _mm256_permutevar8x32_ps(_mm256_castps128_ps256(_mm_loadu_ps(v)), eight);
-    first_ = _mm256_add_ps(first_, _mm256_mul_ps(_mm256_loadu_ps(block), spread));
+    first_ = _mm256_add_ps(first_, _mm256_mul_ps(_mm256_loadu_ps(block), Spread(v, eight)));
     last_ += block[8] * v[2];
+  }
+  void AddTransposed(const Real* block, const Real* v) {
+    const __m256i eight = _mm256_setr_epi32(0, 1, 2, 0, 1, 2, 0, 1);
+    transposedFirst_ = _mm256_add_ps(transposedFirst_, _mm256_mul_ps(_mm256_loadu_ps(block), Spread(v, eight)));
+    transposedLast_ += block[8] * v[2];
   }
   Floats4 Total() const {
     const __m256i fromThree = _mm256_setr_epi32(3, 4, 5, 6, 6, 6, 6, 6);
     const __m128 column0 = _mm256_castps256_ps128(first_);
     const __m128 column1 = _mm256_castps256_ps128(_mm256_permutevar8x32_ps(first_, fromThree));
     const __m128 column2 = _mm_shuffle_ps(_mm256_extractf128_ps(first_, 1), _mm_set_ss(last_), _MM_SHUFFLE(1, 0, 3, 2));
-    return Floats4(_mm_add_ps(_mm_add_ps(column0, column1), column2));
+    const __m128 row0 = Every3(_mm256_setr_epi32(0, 3, 6, 6, 6, 6, 6, 6));
+    const __m128 row1 = Every3(_mm256_setr_epi32(1, 4, 7, 7, 7, 7, 7, 7));
+    const __m128 row2 = _mm_insert_ps(Every3(_mm256_setr_epi32(2, 5, 5, 5, 5, 5, 5, 5)), _mm_set_ss(transposedLast_),
+                                      0x20);  // to the third place
+    return Floats4(
+        _mm_add_ps(_mm_add_ps(_mm_add_ps(column0, column1), column2), _mm_add_ps(_mm_add_ps(row0, row1), row2)));
   }
 
  private:
-  __m256 first_ = _mm256_setzero_ps();
-  Real last_ = 0;
+  static __m256 Spread(const Real* v, __m256i places) {
+    return _mm256_permutevar8x32_ps(_mm256_castps128_ps256(_mm_loadu_ps(v)), places);
+  }
+  __m128 Every3(__m256i places) const {
+    return _mm256_castps256_ps128(_mm256_permutevar8x32_ps(transposedFirst_, places));
+  }
+
+  __m256 first_ = _mm256_setzero_ps(), transposedFirst_ = _mm256_setzero_ps();
+  Real last_ = 0, transposedLast_ = 0;
 };
 #else
 class BlockSum {
  public:
   void Add(const Real* block, const Real* v) {
-    for (int c = 0; c < 3; ++c) column_[c] += Floats4::Load(block + 3 * c) * Floats4(v[c]);
+    for (int c = 0; c < 3; ++c) sum_.c[c] += Floats4::Load(block + 3 * c) * Floats4(v[c]);
   }
-  Floats4 Total() const { return column_[0] + column_[1] + column_[2]; }
+  void AddTransposed(const Real* block, const Real* v) {
+    for (int c = 0; c < 3; ++c) transposed_.c[c] += Floats4::Load(block + 3 * c) * Floats4::Load(v);
+  }
+  Floats4 Total() const {
+    const Columns rows = Transposed(transposed_);
+    return (sum_.c[0] + sum_.c[1] + sum_.c[2]) + (rows.c[0] + rows.c[1] + rows.c[2]);
+  }
 
  private:
-  Floats4 column_[3];
+  Columns sum_, transposed_;
 };
 #endif
 
@@ -42,8 +64,15 @@ template <class Store>
 inline void ForRows(const RowsArgs& a, Store&& store) {
   for (int row = a.begin; row < a.end; ++row) {
     BlockSum sum;
-    for (std::int32_t k = a.first[row]; k < a.first[row + 1]; ++k) {
-      sum.Add(a.blocks + 9 * static_cast<std::int64_t>(k), a.x + 3 * static_cast<std::int64_t>(a.column[k]));
+    const std::int32_t diagonal = a.first[row + 1] - (a.storedFirst[row + 1] - a.storedFirst[row]);
+    const std::int32_t* mirror = a.mirror + (a.first[row] - a.storedFirst[row]);
+    for (std::int32_t k = a.first[row]; k < diagonal; ++k) {
+      sum.AddTransposed(a.blocks + 9 * static_cast<std::int64_t>(*mirror++),
+                        a.x + 3 * static_cast<std::int64_t>(a.column[k]));
+    }
+    const Real* block = a.blocks + 9 * static_cast<std::int64_t>(a.storedFirst[row]);
+    for (std::int32_t k = diagonal; k < a.first[row + 1]; ++k, block += 9) {
+      sum.Add(block, a.x + 3 * static_cast<std::int64_t>(a.column[k]));
     }
     if (a.extraBlocks) {
       for (std::int32_t k = a.extraBegin[row]; k < a.extraEnd[row]; ++k) {

@@ -36,8 +36,10 @@ struct MembraneArgs {
   double* startStrain[3];  ///< Strain at the start of the step, one array per component; padded.
   const double* buckling;  ///< Compression that a second derivative may keep, over `compression` [N s/m]; padded.
   double compression;      ///< How often buckling, over the length of the step [1/s].
-  Vec3* gradient;          ///< Out: by corner a, b, c of each triangle [N].
-  Real* hessian;  ///< Out: per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m]; then one Real.
+  // Out, for triangles from `outFirst` on:
+  int outFirst;
+  Vec3* gradient;  ///< By corner a, b, c of each triangle [N].
+  Real* hessian;   ///< Per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m]; then one Real.
 };
 
 /// What pulls at a vertex beside gravity over one step, quadratic in its way w = y - x: energy ½ wᵀ B w - f·w [J].
@@ -72,9 +74,10 @@ struct PlateArgs {
 /// Some rows of the matrix. Arrays are from the first row, block or triangle of all on.
 struct AssembleArgs {
   int begin, end;
-  const std::int32_t* first;   ///< As in BlockPattern.
-  const std::int32_t* column;  ///< As in BlockPattern.
-  const Real* constant;        ///< Per block the scalar that stands on its diagonal besides.
+  const std::int32_t* first;        ///< As in BlockPattern.
+  const std::int32_t* column;       ///< As in BlockPattern.
+  const std::int32_t* storedFirst;  ///< As SystemMatrix has it: blocks left of the diagonal are not stored.
+  const Real* constant;             ///< Per stored block the scalar that stands on its diagonal besides.
   // Per block off the diagonal the blocks of triangles that it is the sum of, as places in `hessian`: as they are, and
   // transposed. Those of block k are [first[k], first[k + 1]).
   const std::int32_t* sameFirst;
@@ -90,7 +93,9 @@ struct RowsArgs {
   int begin, end;
   const std::int32_t* first;   ///< As in BlockPattern.
   const std::int32_t* column;  ///< As in BlockPattern.
-  const Real* blocks;          ///< Nine per block, column by column; one more can be read at the end.
+  const std::int32_t* storedFirst;
+  const std::int32_t* mirror;  ///< As SystemMatrix has them.
+  const Real* blocks;          ///< Nine per stored block, column by column; one more can be read at the end.
   const std::int32_t* restFirst;
   const std::int32_t* restColumn;
   const Real* restValue;  ///< Scalars outside the pattern, in compressed rows.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fabric/real4.h"
+#include "fabric/window.h"
 
 namespace percale::fabric {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 constexpr Real kOmega = Real{.5};    // damping of Jacobi's steps
 constexpr int kProductChunk = 256;   // rows of H P that one chunk computes
 constexpr int kNodeChunk = 32;       // rows of P' (H P)
+constexpr int kNodeSlab = 1024;      // nodes whose rows of H P are computed at once
 constexpr int kRestrictChunk = 128;  // nodes that one chunk restricts to
 constexpr int kExtraParts = 16;      // each marks all nodes of a level, so there is a fixed number of them
 constexpr int kMostDirect = 200;     // nodes up to which the coarsest level is factored: 6 ms
@@ -32,8 +34,11 @@ struct Multigrid::Level {
   std::vector<std::int32_t> rowFirst, row;  // P': per node its fine rows ...
   std::vector<Real> rowWeight;              // ... and their weights
 
-  // The blocks of T = H P lie in compressed rows.
+  // The blocks of T = H P lie in compressed rows, those of each chunk of kProductChunk rows from a place on that other
+  // chunks have before and after it.
   std::vector<std::int32_t> productFirst;
+  std::size_t chunkBlocks = 0;  // in the longest chunk
+  Window window;                // of chunks of T, for kNodeSlab nodes each
   // In the order of the loops: for each block of H and each weight of its column where in its row of T it goes.
   std::vector<Slot> productSlot;
   std::vector<std::int32_t> productSlotFirst;  // per chunk of kProductChunk rows: its first slot
@@ -41,10 +46,16 @@ struct Multigrid::Level {
   // each block that is not where in its row of A it goes; per node, where the latter start.
   std::vector<Slot> skip, slot;
   std::vector<std::int32_t> slotFirst;
-  std::vector<std::int32_t> mirror;  // per block of A: the one that it is the transpose of, -1 if none
 
   SystemMatrix matrix;
   RealVector right, solution, scratch;  // vectors over its nodes
+
+  /// By how much the blocks of a row of T lie apart from where compressed rows have them.
+  std::int64_t ProductShift(int productRow) const {
+    const int chunk = productRow / kProductChunk;
+    return static_cast<std::int64_t>(chunk % window.slots) * static_cast<std::int64_t>(chunkBlocks) -
+           productFirst[static_cast<std::size_t>(chunk) * kProductChunk];
+  }
 };
 
 /// Sums blocks into rows (Gustavson 1978, "Two fast algorithms for sparse matrices: multiplication and permuted
@@ -164,7 +175,22 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
       productColumn.insert(productColumn.end(), nodes.begin(), nodes.end());
       level.productFirst.push_back(static_cast<std::int32_t>(productColumn.size()));
     }
-    greatestProduct = std::max(greatestProduct, productColumn.size());
+    for (int row = 0; row < P.rows(); row += kProductChunk) {
+      const int end = std::min(P.rows(), row + kProductChunk);
+      level.chunkBlocks =
+          std::max(level.chunkBlocks, static_cast<std::size_t>(level.productFirst[end] - level.productFirst[row]));
+    }
+    std::vector<std::int32_t> firstChunk(Chunks(P.nodes, kNodeSlab), Chunks(P.rows(), kProductChunk));
+    std::vector<std::int32_t> lastChunk(firstChunk.size(), -1);
+    for (int node = 0; node < P.nodes; ++node) {
+      for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
+        std::int32_t &least = firstChunk[node / kNodeSlab], &most = lastChunk[node / kNodeSlab];
+        least = std::min(least, level.row[e] / kProductChunk);
+        most = std::max(most, level.row[e] / kProductChunk);
+      }
+    }
+    level.window = MakeWindow(Chunks(P.rows(), kProductChunk), firstChunk, lastChunk);
+    greatestProduct = std::max(greatestProduct, level.chunkBlocks * static_cast<std::size_t>(level.window.slots));
 
     for (int node = 0; node < P.nodes; ++node) {
       level.slotFirst.push_back(static_cast<std::int32_t>(level.slot.size()));
@@ -174,19 +200,14 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
         const auto diagonal = std::lower_bound(begin, end, node);
         level.skip.push_back(static_cast<Slot>(diagonal - begin));
         for (auto at = diagonal; at != end; ++at) {
-          const std::int32_t place = coarse.Find(node, *at) - coarse.first[node];
+          const std::int32_t place = coarse.Find(node, *at) - level.matrix.Diagonal(node);
           assert(place >= 0 && place <= 0xffff);
           level.slot.push_back(static_cast<Slot>(place));
         }
       }
-      for (std::int32_t k = coarse.first[node]; k < coarse.first[node + 1]; ++k) {
-        const std::int32_t other = coarse.column[k];
-        level.mirror.push_back(other < node ? coarse.Find(other, node) : -1);
-      }
     }
 
     for (std::vector<Slot>* slots : {&level.productSlot, &level.slot, &level.skip}) slots->shrink_to_fit();
-    level.mirror.shrink_to_fit();
 
     level.right.assign(VectorLength(P.nodes), 0);
     level.solution.assign(VectorLength(P.nodes), 0);
@@ -229,50 +250,60 @@ void Multigrid::RefillExtra(const SystemMatrix& fine, const Executor& executor) 
 void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Executor& executor) {
   const Prolongation& p = level.p;
   const BlockPattern& pattern = fine.pattern();
-  // T = H P, by rows.
-  executor.ForChunks(Chunks(p.rows(), kProductChunk), [&](int chunk) {
+  const auto multiply = [&](int chunk) {  // T = H P, by rows
     const int begin = chunk * kProductChunk, end = std::min(p.rows(), begin + kProductChunk);
+    const std::int64_t shift = level.ProductShift(begin);
     const Slot* __restrict slot = level.productSlot.data() + level.productSlotFirst[chunk];
     for (int row = begin; row < end; ++row) {
       const std::int32_t productBegin = level.productFirst[row], productEnd = level.productFirst[row + 1];
       if (productBegin == productEnd) continue;
-      Real* __restrict to = &product_[9 * static_cast<std::size_t>(productBegin)];
+      Real* __restrict to = product_.data() + 9 * (shift + productBegin);
       std::fill_n(to, 9 * static_cast<std::size_t>(productEnd - productBegin), Real{0});
+      const Real* stored = fine.DiagonalBlock(row);
+      const std::int32_t* mirror = fine.mirror().data() + (pattern.first[row] - fine.storedFirst()[row]);
       for (std::int32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
-        const Real* __restrict block = fine.Block(k);
+        const Real* block = stored;
+        Real transposed[9];
+        if (pattern.column[k] < row) {
+          const Real* from = fine.Block(*mirror++);
+          for (int c = 0; c < 9; ++c) transposed[c] = from[c % 3 * 3 + c / 3];
+          block = transposed;
+        } else {
+          stored += 9;
+        }
         const std::int32_t other = pattern.column[k];
         for (std::int32_t e = p.first[other]; e < p.first[other + 1]; ++e) {
           AddScaled(to + 9 * static_cast<std::size_t>(*slot++), p.weight[e], block);
         }
       }
     }
-  });
+  };
   // A = P' T on and right of the diagonal, on top of the constant part.
   level.matrix.Reset(executor);
-  const BlockPattern& coarse = level.matrix.pattern();
-  executor.ForChunks(Chunks(p.nodes, kNodeChunk), [&](int chunk) {
-    const int begin = chunk * kNodeChunk, end = std::min(p.nodes, begin + kNodeChunk);
+  const auto sum = [&](int begin, int end) {
     const Slot* __restrict slot = level.slot.data() + level.slotFirst[begin];
     for (int node = begin; node < end; ++node) {
-      Real* __restrict to = level.matrix.Block(coarse.first[node]);
+      Real* __restrict to = level.matrix.DiagonalBlock(node);
       for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
         const Real weight = level.rowWeight[e];
-        const std::int32_t last = level.productFirst[level.row[e] + 1];
-        for (std::int32_t k = level.productFirst[level.row[e]] + level.skip[e]; k < last; ++k) {
-          AddScaled(to + 9 * static_cast<std::size_t>(*slot++), weight, &product_[9 * static_cast<std::size_t>(k)]);
-        }
+        const int row = level.row[e];
+        const std::int64_t shift = level.ProductShift(row);
+        const Real* __restrict from = product_.data() + 9 * (shift + level.productFirst[row] + level.skip[e]);
+        const Real* const last = product_.data() + 9 * (shift + level.productFirst[row + 1]);
+        for (; from < last; from += 9) AddScaled(to + 9 * static_cast<std::size_t>(*slot++), weight, from);
       }
     }
-  });
-  executor.ForChunks(Chunks(p.nodes), [&](int chunk) {
-    const int begin = chunk * kRowsPerChunk, end = std::min(p.nodes, begin + kRowsPerChunk);
-    for (std::int32_t k = coarse.first[begin]; k < coarse.first[end]; ++k) {
-      if (level.mirror[k] < 0) continue;
-      const Real* __restrict from = level.matrix.Block(level.mirror[k]);
-      Real* __restrict to = level.matrix.Block(k);
-      for (int c = 0; c < 9; ++c) to[c] = from[c % 3 * 3 + c / 3];
-    }
-  });
+  };
+  int made = 0;
+  for (int slab = 0; slab < static_cast<int>(level.window.end.size()); ++slab) {
+    const int first = std::exchange(made, level.window.end[slab]);
+    executor.ForChunks(made - first, [&](int chunk) { multiply(first + chunk); });
+    const int begin = slab * kNodeSlab, count = std::min(kNodeSlab, p.nodes - begin);
+    executor.ForChunks(Chunks(count, kNodeChunk), [&](int chunk) {
+      const int from = begin + chunk * kNodeChunk;
+      sum(from, std::min(from + kNodeChunk, begin + count));
+    });
+  }
 }
 
 /// Fills `to` with `rows` rows: visit(row, part) adds the blocks of one to `part`. Each part sums its share of the rows
@@ -405,8 +436,7 @@ std::size_t Multigrid::MemoryBytes() const {
     bytes += Bytes(level.p.first) + Bytes(level.p.column) + Bytes(level.p.weight) + Bytes(level.rowFirst) +
              Bytes(level.row) + Bytes(level.rowWeight) + Bytes(level.productFirst) + Bytes(level.productSlotFirst) +
              Bytes(level.productSlot) + Bytes(level.skip) + Bytes(level.slot) + Bytes(level.slotFirst) +
-             Bytes(level.mirror) + Bytes(level.right) + Bytes(level.solution) + Bytes(level.scratch) +
-             level.matrix.MemoryBytes();
+             Bytes(level.right) + Bytes(level.solution) + Bytes(level.scratch) + level.matrix.MemoryBytes();
   }
   return bytes;
 }

@@ -61,7 +61,7 @@ class Multigrid {
 
   std::vector<std::unique_ptr<Level>> levels_;
   std::vector<ExtraPart> parts_;  // each of a share of the rows, while extra blocks are summed
-  RealVector product_;            // H P of the level at hand
+  RealVector product_;            // as much of H P of the level at hand as is needed at once
   ExtraRows extraProduct_;        // E P of the level at hand
   RealVector fineScratch_;        // one vector over the vertices
   DenseFactor dense_;

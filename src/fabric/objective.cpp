@@ -14,6 +14,10 @@ namespace {
 /// second derivative: so far wrinkles may form within one Newton step. See docs/solver.md.
 constexpr double kCompressionShare = 1;
 
+/// Rows of the matrix whose triangles are evaluated at once: what these come to takes 6 MB, and each thread of some has
+/// a few chunks.
+constexpr int kRowsPerSlab = 32 * kRowsPerChunk;
+
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
 }
@@ -28,6 +32,7 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
                      const Kernels& kernels)
     : model_(model), pattern_(pattern), executor_(executor), kernels_(kernels) {
   const std::size_t triangles = model.triangles.size();
+  FindWindow();
   FindParts();
   for (int c = 0; c < model.Cloths(); ++c) {
     const int end = model.firstTriangle[Index(c) + 1];
@@ -35,15 +40,15 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
       batches_.push_back({c, t, std::min(t + kRowsPerChunk, end)});
     }
   }
-  for (std::vector<double>* padded : {&area_, &inverse_[0], &inverse_[1], &inverse_[2], &inverse_[3], &startStrain_[0],
-                                      &startStrain_[1], &startStrain_[2], &buckling_}) {
+  for (std::vector<double>* padded : {&area_, &inverse_[0], &inverse_[1], &inverse_[2], &inverse_[3], &buckling_}) {
     padded->assign(triangles + kTrianglePad, 0);
   }
   for (std::size_t t = 0; t < triangles; ++t) {
     for (std::size_t k = 0; k < 4; ++k) inverse_[k][t] = model.rest[t].inverse[k];
   }
-  triangleGradient_.resize(3 * triangles);
-  triangleHessian_.assign(kHessianReals * triangles, 0);
+  const auto live = std::min(triangles, static_cast<std::size_t>(window_.slots) * kRowsPerChunk);
+  triangleGradient_.resize(3 * live);
+  triangleHessian_.assign(kHessianReals * live, 0);
   plateForce_.resize(static_cast<std::size_t>(model.vertexCount));
   const auto items = std::max(static_cast<std::size_t>(model.vertexCount), triangles);
   chunkSums_.resize(std::max(batches_.size(), items / kRowsPerChunk + 1));
@@ -54,9 +59,32 @@ void Objective::TakeMaterials() {
   // A patch counts as so much more membrane.
   for (std::size_t t = 0; t < model_.rest.size(); ++t) area_[t] = model_.rest[t].area * model_.strength[t];
   std::copy(model_.buckling.begin(), model_.buckling.end(), buckling_.begin());
+  const bool damped = std::any_of(model_.membranes.begin(), model_.membranes.end(),
+                                  [](const Membrane& membrane) { return membrane.damping > 0; });
+  for (std::vector<double>& padded : startStrain_) padded.resize(damped ? area_.size() : 0);
   const std::size_t hinges = model_.anyHinges ? model_.hinges.size() : 0;
   for (std::vector<double>* perHinge : {&startAngle_, &angle_, &moment_}) perHinge->resize(hinges);
   hinge_.resize(hinges);
+}
+
+/// Which triangles the rows of the matrix are the sums of.
+void Objective::FindWindow() {
+  const auto makers = static_cast<std::int32_t>(Chunks(static_cast<int>(model_.triangles.size())));
+  const auto slabs = Index(Chunks(model_.vertexCount, kRowsPerSlab));
+  std::vector<std::int32_t> first(slabs, makers), last(slabs, -1);
+  for (int v = 0; v < model_.vertexCount; ++v) {
+    const std::int32_t begin = model_.corners.first[Index(v)], end = model_.corners.first[Index(v) + 1];
+    if (begin == end) continue;
+    std::int32_t &least = first[Index(v / kRowsPerSlab)], &most = last[Index(v / kRowsPerSlab)];
+    least = std::min(least, model_.corners.entry[Index(begin)] / 3 / kRowsPerChunk);
+    most = std::max(most, model_.corners.entry[Index(end - 1)] / 3 / kRowsPerChunk);
+  }
+  window_ = MakeWindow(makers, first, last);
+}
+
+/// Where what is evaluated of a triangle lies.
+std::int32_t Objective::Place(std::int64_t triangle) const {
+  return static_cast<std::int32_t>(triangle % (static_cast<std::int64_t>(window_.slots) * kRowsPerChunk));
 }
 
 /// Which blocks of triangles each block of the matrix is the sum of.
@@ -66,7 +94,7 @@ void Objective::FindParts() {
   same_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][e % 3 * 3 + (e + 1) % 3]; });
   transposed_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][(e + 1) % 3 * 3 + e % 3]; });
   for (Lists* lists : {&same_, &transposed_}) {
-    for (std::int32_t& e : lists->entry) e = e / 3 * kHessianReals + e % 3 * 9;
+    for (std::int32_t& e : lists->entry) e = Place(e / 3) * kHessianReals + e % 3 * 9;
   }
 }
 
@@ -86,7 +114,7 @@ double Objective::Sum(int count, Body&& body) {
 void Objective::Begin(const StepSettings& step) {
   step_ = step;
   executor_.ForChunks(static_cast<int>(batches_.size()), [&](int batch) {
-    const MembraneArgs arguments = Arguments(step.start, batch);
+    const MembraneArgs arguments = Arguments(step.start, batches_[Index(batch)]);
     if (arguments.damping != 0) kernels_.membraneStrain(arguments);
   });
   if (model_.anyHinges) {
@@ -101,11 +129,15 @@ double Objective::Energy(std::span<const Vec3> y) {
     double sum = 0;
     for (int v = begin; v < end; ++v) {
       if (!step_.free[Index(v)]) continue;
-      const Vec3 off = y[Index(v)] - step_.predicted[Index(v)], way = y[Index(v)] - step_.start[Index(v)];
-      const VertexLoad& load = step_.loads[Index(v)];
-      const Vector3<double> w = From<double>(way);
-      sum += 0.5 * model_.mass[Index(v)] * perStep * Dot(off, off) + 0.5 * Dot(w, load.stiffness * w) -
-             Dot(load.force, way);
+      const Vec3 off = y[Index(v)] - step_.predicted[Index(v)];
+      double cost = 0.5 * model_.mass[Index(v)] * perStep * Dot(off, off);
+      if (!step_.loads.empty()) {
+        const VertexLoad& load = step_.loads[Index(v)];
+        const Vec3 way = y[Index(v)] - step_.start[Index(v)];
+        const Vector3<double> w = From<double>(way);
+        cost = cost + 0.5 * Dot(w, load.stiffness * w) - Dot(load.force, way);
+      }
+      sum += cost;
     }
     return sum;
   });
@@ -137,8 +169,7 @@ double Objective::ElasticEnergy(std::span<const Vec3> y) {
   return energy;
 }
 
-MembraneArgs Objective::Arguments(std::span<const Vec3> y, int batch) {
-  const Batch& of = batches_[Index(batch)];
+MembraneArgs Objective::Arguments(std::span<const Vec3> y, const Batch& of) {
   const Membrane& membrane = model_.membranes[Index(of.cloth)];
   const double perStep = step_.h > 0 ? 1 / step_.h : 0;
   return {.begin = of.begin,
@@ -154,14 +185,16 @@ MembraneArgs Objective::Arguments(std::span<const Vec3> y, int batch) {
           .startStrain = {startStrain_[0].data(), startStrain_[1].data(), startStrain_[2].data()},
           .buckling = buckling_.data(),
           .compression = kCompressionShare * perStep,
-          .gradient = triangleGradient_.data(),
-          .hessian = triangleHessian_.data()};
+          .outFirst = of.begin,
+          .gradient = triangleGradient_.data() + 3 * Index(Place(of.begin)),
+          .hessian = triangleHessian_.data() + kHessianReals * Index(Place(of.begin))};
 }
 
 double Objective::MembraneEnergy(std::span<const Vec3> y) {
   const int batches = static_cast<int>(batches_.size());
-  executor_.ForChunks(batches,
-                      [&](int batch) { chunkSums_[Index(batch)] = kernels_.membraneEnergy(Arguments(y, batch)); });
+  executor_.ForChunks(batches, [&](int batch) {
+    chunkSums_[Index(batch)] = kernels_.membraneEnergy(Arguments(y, batches_[Index(batch)]));
+  });
   double sum = 0;
   for (int batch = 0; batch < batches; ++batch) sum += chunkSums_[Index(batch)];
   return sum;
@@ -229,43 +262,65 @@ BendingMoments<double> Objective::Bend(int t) const {
   return Moments(model_.bending[Index(t)], angle, rest, damping);
 }
 
-void Objective::EvaluateTriangles(std::span<const Vec3> y, bool withTangent) {
-  executor_.ForChunks(static_cast<int>(batches_.size()), [&](int batch) {
-    (withTangent ? kernels_.membraneTangent : kernels_.membraneGradient)(Arguments(y, batch));
-    AddPressure(y, batches_[Index(batch)]);
-  });
+/// Of kRowsPerChunk triangles, whatever cloths they are of.
+void Objective::EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int block) {
+  const std::int32_t end = std::min((block + 1) * kRowsPerChunk, static_cast<int>(model_.triangles.size()));
+  for (std::int32_t begin = block * kRowsPerChunk; begin < end;) {
+    const std::int32_t cloth = model_.clothOf[Index(begin)];
+    const Batch batch{cloth, begin, std::min(end, model_.firstTriangle[Index(cloth) + 1])};
+    const MembraneArgs arguments = Arguments(y, batch);
+    (withTangent ? kernels_.membraneTangent : kernels_.membraneGradient)(arguments);
+    AddPressure(y, arguments, model_.pressure[Index(cloth)]);
+    begin = batch.end;
+  }
 }
 
-void Objective::AddPressure(std::span<const Vec3> y, const Batch& batch) {
-  const double pressure = model_.pressure[Index(batch.cloth)];
+void Objective::AddPressure(std::span<const Vec3> y, const MembraneArgs& to, double pressure) {
   if (pressure == 0) return;
-  for (int t = batch.begin; t < batch.end; ++t) {
+  Vec3* gradient = to.gradient;
+  for (int t = to.begin; t < to.end; ++t) {
     const Triangle& tri = model_.triangles[Index(t)];
     const EnclosedVolume<double> volume = Volume(At(y, tri.a), At(y, tri.b), At(y, tri.c));
-    for (int k = 0; k < 3; ++k) triangleGradient_[3 * Index(t) + Index(k)] -= ToVec3(volume.gradient[k] * pressure);
+    for (int k = 0; k < 3; ++k) *gradient++ -= ToVec3(volume.gradient[k] * pressure);
+  }
+}
+
+/// Evaluates triangles, and calls rows(begin, end) for rows of the matrix whose triangles are evaluated.
+template <class Rows>
+void Objective::ForRows(std::span<const Vec3> y, bool withTangent, Rows&& rows) {
+  int made = 0;
+  for (int slab = 0; slab < static_cast<int>(window_.end.size()); ++slab) {
+    const int first = std::exchange(made, window_.end[Index(slab)]);
+    executor_.ForChunks(made - first, [&](int block) { EvaluateTriangles(y, withTangent, first + block); });
+    const int begin = slab * kRowsPerSlab, count = std::min(kRowsPerSlab, model_.vertexCount - begin);
+    executor_.ForChunks(Chunks(count), [&](int chunk) {
+      const int from = begin + chunk * kRowsPerChunk;
+      rows(from, std::min(from + kRowsPerChunk, begin + count));
+    });
   }
 }
 
 void Objective::Gradient(std::span<const Vec3> y, std::span<Vec3> gradient) {
-  EvaluateTriangles(y, false);
   PlateEnergy(y);
-  Gather(y, gradient);
+  SumMoments(y);
+  ForRows(y, false, [&](int begin, int end) { Gather(y, gradient, begin, end); });
+  AddTethers(y, gradient);
   if (contacts_) contacts_->AddGradient(y, gradient);
 }
 
 double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix) {
-  EvaluateTriangles(y, true);
-  Gather(y, gradient);
   const auto addToDiagonal = [&](int v, const Matrix3<double>& stiffness) {
     Real* block = matrix.DiagonalBlock(v);
     for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
   };
-  executor_.ForChunks(Chunks(model_.vertexCount), [&](int chunk) {
-    const int begin = chunk * kRowsPerChunk, end = std::min(begin + kRowsPerChunk, model_.vertexCount);
+  SumMoments(y);
+  ForRows(y, true, [&](int begin, int end) {
+    Gather(y, gradient, begin, end);
     kernels_.assemble({.begin = begin,
                        .end = end,
                        .first = pattern_.first.data(),
                        .column = pattern_.column.data(),
+                       .storedFirst = matrix.storedFirst().data(),
                        .constant = matrix.constant().data(),
                        .sameFirst = same_.first.data(),
                        .same = same_.entry.data(),
@@ -273,8 +328,9 @@ double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gr
                        .transposed = transposed_.entry.data(),
                        .hessian = triangleHessian_.data(),
                        .blocks = matrix.Block(0)});
-    for (int v = begin; v < end; ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);
+    for (int v = begin; v < end && !step_.loads.empty(); ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);
   });
+  AddTethers(y, gradient);
   for (const FabricTether& tether : model_.tethers) addToDiagonal(tether.vertex, Pull(tether, y).hessian);
   double change = 0;
   if (contacts_) {
@@ -287,42 +343,52 @@ double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gr
   return change;
 }
 
-/// What all terms come to at each vertex.
-void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient) {
-  if (model_.anyHinges) {
-    EvaluateHinges(y, true);
-    ForRange(executor_, model_.hinges.size(), [&](int h) {
-      double moment = 0;
-      for (const std::int32_t t : model_.hinges[Index(h)].triangle) {
-        const std::array<std::int32_t, 3>& hinges = model_.hingeOf[Index(t)];
-        const std::size_t k = hinges[0] == h ? 0 : hinges[1] == h ? 1 : 2;
-        moment += Bend(t).moment.edge[k];
-      }
-      moment_[Index(h)] = moment;
-    });
-  }
+/// The moments on all hinges.
+void Objective::SumMoments(std::span<const Vec3> y) {
+  if (!model_.anyHinges) return;
+  EvaluateHinges(y, true);
+  ForRange(executor_, model_.hinges.size(), [&](int h) {
+    double moment = 0;
+    for (const std::int32_t t : model_.hinges[Index(h)].triangle) {
+      const std::array<std::int32_t, 3>& hinges = model_.hingeOf[Index(t)];
+      const std::size_t k = hinges[0] == h ? 0 : hinges[1] == h ? 1 : 2;
+      moment += Bend(t).moment.edge[k];
+    }
+    moment_[Index(h)] = moment;
+  });
+}
+
+/// What all terms but tethers and contacts come to at some vertices.
+void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int begin, int end) {
   const double perStep = 1 / (step_.h * step_.h);
-  ForRange(executor_, Index(model_.vertexCount), [&](int v) {
+  const auto live = static_cast<std::int32_t>(triangleGradient_.size());
+  for (int v = begin; v < end; ++v) {
     if (!step_.free[Index(v)]) {
       gradient[Index(v)] = {};
-      return;
+      continue;
     }
     const Vec3 off = y[Index(v)] - step_.predicted[Index(v)];
-    const VertexLoad& load = step_.loads[Index(v)];
-    Vec3 sum = off * (model_.mass[Index(v)] * perStep) - load.force +
-               ToVec3(load.stiffness * From<double>(y[Index(v)] - step_.start[Index(v)]));
+    Vec3 sum = off * (model_.mass[Index(v)] * perStep);
+    if (!step_.loads.empty()) {
+      const VertexLoad& load = step_.loads[Index(v)];
+      sum -= load.force;
+      sum += ToVec3(load.stiffness * From<double>(y[Index(v)] - step_.start[Index(v)]));
+    }
     for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
-      sum += triangleGradient_[Index(model_.corners.entry[Index(e)])];
+      sum += triangleGradient_[Index(model_.corners.entry[Index(e)] % live)];
     }
     sum += plateForce_[Index(v)];
     if (!model_.plate[Index(v)]) {
       for (std::int32_t e = model_.hingeEnds.first[Index(v)]; e < model_.hingeEnds.first[Index(v) + 1]; ++e) {
-        const std::int32_t end = model_.hingeEnds.entry[Index(e)];
-        sum += ToVec3(hinge_[Index(end / 4)].gradient[end % 4] * moment_[Index(end / 4)]);
+        const std::int32_t place = model_.hingeEnds.entry[Index(e)];
+        sum += ToVec3(hinge_[Index(place / 4)].gradient[place % 4] * moment_[Index(place / 4)]);
       }
     }
     gradient[Index(v)] = sum;
-  });
+  }
+}
+
+void Objective::AddTethers(std::span<const Vec3> y, std::span<Vec3> gradient) const {
   for (const FabricTether& tether : model_.tethers) gradient[Index(tether.vertex)] += ToVec3(Pull(tether, y).gradient);
 }
 

@@ -15,6 +15,7 @@
 #include "fabric/fabric_model.h"
 #include "fabric/kernels.h"
 #include "fabric/system_matrix.h"
+#include "fabric/window.h"
 #include "percale/vec3.h"
 
 namespace percale::fabric {
@@ -24,7 +25,7 @@ struct StepSettings {
   double h = 0;                        ///< Length [s].
   std::span<const Vec3> start;         ///< x, where the step begins [m].
   std::span<const Vec3> predicted;     ///< x~, where inertia and gravity alone would lead [m].
-  std::span<const VertexLoad> loads;   ///< Per vertex.
+  std::span<const VertexLoad> loads;   ///< Per vertex; or nothing: none.
   std::span<const std::uint8_t> free;  ///< Per vertex: 0 for pins, whose gradient is zero.
 };
 
@@ -69,12 +70,18 @@ class Objective {
   BendingMoments<double> Bend(int triangle) const;
   PointEnergy<double> Pull(const FabricTether& tether, std::span<const Vec3> y) const;
   double PlateEnergy(std::span<const Vec3> y);
+  void FindWindow();
   void FindParts();
-  MembraneArgs Arguments(std::span<const Vec3> y, int batch);
-  void EvaluateTriangles(std::span<const Vec3> y, bool withTangent);
-  void AddPressure(std::span<const Vec3> y, const Batch& batch);
+  MembraneArgs Arguments(std::span<const Vec3> y, const Batch& batch);
+  void EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int block);
+  void AddPressure(std::span<const Vec3> y, const MembraneArgs& to, double pressure);
   void EvaluateHinges(std::span<const Vec3> y, bool withGradient);
-  void Gather(std::span<const Vec3> y, std::span<Vec3> gradient);
+  void SumMoments(std::span<const Vec3> y);
+  void AddTethers(std::span<const Vec3> y, std::span<Vec3> gradient) const;
+  void Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int begin, int end);
+  template <class Rows>
+  void ForRows(std::span<const Vec3> y, bool withTangent, Rows&& rows);
+  std::int32_t Place(std::int64_t triangle) const;
   template <class Body>
   double Sum(int count, Body&& body);
 
@@ -89,6 +96,8 @@ class Objective {
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:
   std::vector<double> area_, inverse_[4], startStrain_[3], buckling_;
+  // The same of those that are needed at once:
+  Window window_;  // of kRowsPerChunk triangles each, for kRowsPerSlab rows of the matrix each
   std::vector<Vec3> triangleGradient_;
   RealVector triangleHessian_;
   // Per hinge, where any cloth bends by them:

@@ -75,10 +75,17 @@ Prolongation CoarsenByGrid(int rows, std::vector<Sample>& samples, std::vector<P
     slots += (static_cast<std::size_t>(panel.cells[0]) + 1) * (static_cast<std::size_t>(panel.cells[1]) + 1);
   }
 
-  // Entries by slots of the grids; then nodes are numbered where a slot is used.
+  // Nodes are numbered in the order in which rows need them: those that are near each other in one level are so in all.
   std::vector<std::int32_t> node(slots, -1);
-  std::vector<std::pair<std::int32_t, std::pair<std::size_t, double>>> entries;
+  std::vector<Sample> nodes;
+  Prolongation p;
+  p.first.push_back(0);
+  std::vector<std::pair<std::int32_t, double>> row;
+  const auto finishRows = [&](int end) {
+    for (; p.rows() < end; row.clear()) AppendRow(row, p);
+  };
   for (const Sample& s : samples) {
+    finishRows(s.row);
     const Panel& panel = panels[s.panel];
     const double at[2] = {s.u, s.v};
     int cell[2];
@@ -92,44 +99,24 @@ Prolongation CoarsenByGrid(int rows, std::vector<Sample>& samples, std::vector<P
       if (share[axis] > 1 - kSnap) share[axis] = 1;
     }
     for (int corner = 0; corner < 4; ++corner) {
-      const int du = corner % 2, dv = corner / 2;
-      const double weight = (du ? share[0] : 1 - share[0]) * (dv ? share[1] : 1 - share[1]);
+      const int i = cell[0] + corner % 2, j = cell[1] + corner / 2;
+      const double weight = (i > cell[0] ? share[0] : 1 - share[0]) * (j > cell[1] ? share[1] : 1 - share[1]);
       if (weight <= 0) continue;
-      const std::size_t slot = panel.firstSlot +
-                               static_cast<std::size_t>(cell[1] + dv) * (static_cast<std::size_t>(panel.cells[0]) + 1) +
-                               static_cast<std::size_t>(cell[0] + du);
-      node[slot] = 0;
-      entries.push_back({s.row, {slot, weight}});
-    }
-  }
-  std::vector<Sample> nodes;
-  for (int index = 0; index < static_cast<int>(panels.size()); ++index) {
-    const Panel& panel = panels[index];
-    std::size_t slot = panel.firstSlot;
-    for (int j = 0; j <= panel.cells[1]; ++j) {
-      for (int i = 0; i <= panel.cells[0]; ++i, ++slot) {
-        if (node[slot] < 0) continue;
-        node[slot] = static_cast<std::int32_t>(nodes.size());
+      std::int32_t& number =
+          node[panel.firstSlot + static_cast<std::size_t>(j) * (static_cast<std::size_t>(panel.cells[0]) + 1) +
+               static_cast<std::size_t>(i)];
+      if (number < 0) {
+        number = static_cast<std::int32_t>(nodes.size());
         const auto place = [&](int axis, int k) {
           return panel.low[axis] + (panel.high[axis] - panel.low[axis]) * k / std::max(1, panel.cells[axis]);
         };
-        nodes.push_back({node[slot], index, place(0, i), place(1, j)});
+        nodes.push_back({number, s.panel, place(0, i), place(1, j)});
       }
+      row.push_back({number, weight});
     }
   }
-
-  Prolongation p;
+  finishRows(rows);
   p.nodes = static_cast<int>(nodes.size());
-  p.first.push_back(0);
-  std::vector<std::pair<std::int32_t, double>> row;
-  std::size_t next = 0;
-  for (int r = 0; r < rows; ++r) {
-    row.clear();
-    for (; next < entries.size() && entries[next].first == r; ++next) {
-      row.push_back({node[entries[next].second.first], entries[next].second.second});
-    }
-    AppendRow(row, p);
-  }
   samples = std::move(nodes);
   for (Panel& panel : panels) panel.spacing *= kVerticesPerNode;
   return p;

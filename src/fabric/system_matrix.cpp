@@ -115,18 +115,25 @@ void SystemMatrix::SetUp(BlockPattern pattern, const ScalarMatrix& constant, std
   pattern_ = std::move(pattern);
   pinned_.assign(pinned.begin(), pinned.end());
   const int n = rows();
-  const std::size_t blockCount = pattern_.column.size();
-  diagonal_.resize(n);
+  storedFirst_.assign(1, 0);
+  mirror_.clear();
+  mirror_.reserve(static_cast<std::size_t>(pattern_.blocks() - n) / 2);
   cleared_.clear();
-  constant_.assign(blockCount, 0);
-  blocks_.assign(9 * blockCount + 1, 0);
-  inverse_.assign(9 * static_cast<std::size_t>(n) + 1, 0);
   for (int row = 0; row < n; ++row) {
-    diagonal_[row] = pattern_.Find(row, row);
-    for (std::int32_t k = pattern_.first[row]; k < pattern_.first[row + 1]; ++k) {
-      if (Pinned(row) || Pinned(pattern_.column[k])) cleared_.push_back(k);
+    const std::int32_t diagonal = pattern_.Find(row, row);
+    for (std::int32_t k = pattern_.first[row]; k < diagonal; ++k) {
+      const std::int32_t above = pattern_.column[k];
+      mirror_.push_back(storedFirst_[above] + pattern_.Find(above, row) - Diagonal(above));
     }
+    for (std::int32_t k = diagonal; k < pattern_.first[row + 1]; ++k) {
+      if (Pinned(row) || Pinned(pattern_.column[k])) cleared_.push_back(storedFirst_[row] + k - diagonal);
+    }
+    storedFirst_.push_back(storedFirst_[row] + pattern_.first[row + 1] - diagonal);
   }
+  const std::size_t stored = storedFirst_.back();
+  constant_.assign(stored, 0);
+  blocks_.assign(9 * stored + 1, 0);
+  inverse_.assign(9 * static_cast<std::size_t>(n) + 1, 0);
   restFirst_.assign(1, 0);
   restColumn_.clear();
   restValue_.clear();
@@ -135,7 +142,7 @@ void SystemMatrix::SetUp(BlockPattern pattern, const ScalarMatrix& constant, std
       const std::int32_t column = constant.column[k];
       if (Pinned(row) || Pinned(column)) continue;
       if (const std::int32_t inside = pattern_.Find(row, column); inside >= 0) {
-        constant_[inside] = static_cast<Real>(constant.value[k]);
+        if (column >= row) constant_[storedFirst_[row] + inside - Diagonal(row)] = static_cast<Real>(constant.value[k]);
       } else {
         restColumn_.push_back(column);
         restValue_.push_back(static_cast<Real>(constant.value[k]));
@@ -158,7 +165,7 @@ ScalarMatrix SystemMatrix::Rest() const {
 void SystemMatrix::Reset(const Executor& executor) {
   executor.ForChunks(Chunks(rows()), [&](int chunk) {
     const int begin = chunk * kRowsPerChunk, end = std::min(rows(), begin + kRowsPerChunk);
-    for (std::int32_t k = pattern_.first[begin]; k < pattern_.first[end]; ++k) {
+    for (std::int32_t k = storedFirst_[begin]; k < storedFirst_[end]; ++k) {
       Real* block = Block(k);
       for (int c = 0; c < 9; ++c) block[c] = 0;
       block[0] = block[4] = block[8] = constant_[k];
@@ -230,16 +237,16 @@ void SystemMatrix::Finish(const Executor& executor) {
   executor.ForChunks(Chunks(rows()), [&](int chunk) {
     for (int row = chunk * kRowsPerChunk; row < std::min(rows(), (chunk + 1) * kRowsPerChunk); ++row) {
       if (Pinned(row)) {
-        for (const int c : {0, 4, 8}) Block(diagonal_[row])[c] = 1;
+        for (const int c : {0, 4, 8}) DiagonalBlock(row)[c] = 1;
       }
-      Invert(Diagonal(row), &inverse_[9 * static_cast<std::size_t>(row)]);
+      Invert(WholeDiagonal(row), &inverse_[9 * static_cast<std::size_t>(row)]);
     }
   });
 }
 
-std::array<Real, 9> SystemMatrix::Diagonal(int row) const {
+std::array<Real, 9> SystemMatrix::WholeDiagonal(int row) const {
   std::array<Real, 9> sum;
-  std::copy_n(Block(diagonal_[row]), 9, sum.begin());
+  std::copy_n(DiagonalBlock(row), 9, sum.begin());
   if (!extra_.any) return sum;
   for (std::int32_t k = extra_.begin[row]; k < extra_.end[row]; ++k) {
     if (extra_.column[k] != row) continue;
@@ -253,6 +260,8 @@ RowsArgs SystemMatrix::Rows(int chunk, const Real* x, Real* y) const {
           .end = std::min(rows(), (chunk + 1) * kRowsPerChunk),
           .first = pattern_.first.data(),
           .column = pattern_.column.data(),
+          .storedFirst = storedFirst_.data(),
+          .mirror = mirror_.data(),
           .blocks = blocks_.data(),
           .restFirst = restFirst_.data(),
           .restColumn = restColumn_.data(),
@@ -312,7 +321,15 @@ void SystemMatrix::ToDense(double* dense) const {
     for (int k = 0; k < 9; ++k) dense[(3 * row + k % 3) * n + 3 * column + k / 3] += static_cast<double>(block[k]);
   };
   for (int row = 0; row < rows(); ++row) {
-    for (std::int32_t k = pattern_.first[row]; k < pattern_.first[row + 1]; ++k) add(row, pattern_.column[k], Block(k));
+    for (std::int32_t k = Diagonal(row); k < pattern_.first[row + 1]; ++k) {
+      const Real* block = Block(storedFirst_[row] + k - Diagonal(row));
+      const int column = pattern_.column[k];
+      add(row, column, block);
+      if (column == row) continue;
+      std::array<Real, 9> transposed;
+      for (int c = 0; c < 9; ++c) transposed[c] = block[c % 3 * 3 + c / 3];
+      add(column, row, transposed.data());
+    }
     for (std::int32_t k = restFirst_[row]; k < restFirst_[row + 1]; ++k) {
       for (int r = 0; r < 3; ++r)
         dense[(3 * row + r) * n + 3 * restColumn_[k] + r] += static_cast<double>(restValue_[k]);
@@ -325,9 +342,9 @@ void SystemMatrix::ToDense(double* dense) const {
 
 std::size_t SystemMatrix::MemoryBytes() const {
   return Bytes(pattern_.first) + Bytes(pattern_.column) + Bytes(restFirst_) + Bytes(restColumn_) + Bytes(restValue_) +
-         Bytes(pinned_) + Bytes(diagonal_) + Bytes(cleared_) + Bytes(constant_) + Bytes(blocks_) + Bytes(inverse_) +
-         Bytes(extra_.begin) + Bytes(extra_.end) + Bytes(extra_.column) + Bytes(extra_.block) + Bytes(extraFirst_) +
-         Bytes(extraOrder_);
+         Bytes(pinned_) + Bytes(storedFirst_) + Bytes(mirror_) + Bytes(cleared_) + Bytes(constant_) + Bytes(blocks_) +
+         Bytes(inverse_) + Bytes(extra_.begin) + Bytes(extra_.end) + Bytes(extra_.column) + Bytes(extra_.block) +
+         Bytes(extraFirst_) + Bytes(extraOrder_);
 }
 
 }  // namespace percale::fabric

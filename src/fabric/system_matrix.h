@@ -7,7 +7,9 @@
 /// B has blocks of 3 x 3 between neighbours in the mesh and is filled anew in every Newton step. S has scalars, which
 /// stay: bending that is quadratic in the positions (Bergou et al. 2006, "A quadratic bending model for inextensible
 /// surfaces") and masses over h^2. E has blocks between vertices wherever they are, in places that change: contacts.
-/// Rows and columns of pinned vertices are those of the identity.
+/// Rows and columns of pinned vertices are those of the identity. Of B, which takes most of the memory and of the time
+/// to read it, only the blocks on and right of the diagonal are stored; a block left of it is the transpose of one of
+/// them, in a row not far above where neighbours are near each other in memory.
 ///
 /// A coarse level of multigrid is such a matrix too, over nodes instead of vertices.
 
@@ -93,13 +95,23 @@ class SystemMatrix {
 
   /// Starts to fill the blocks: sets them to what S has within the pattern.
   void Reset(const Executor& executor);
-  /// The nine Reals of the block with that index in the pattern, column by column: what links force component r of its
-  /// row with displacement component c of its column is at 3 c + r. To be added to.
+  /// The nine Reals of a stored block, column by column: what links force component r of its row with displacement
+  /// component c of its column is at 3 c + r. To be added to.
   Real* Block(std::int32_t index) { return &blocks_[9 * static_cast<std::size_t>(index)]; }
   const Real* Block(std::int32_t index) const { return &blocks_[9 * static_cast<std::size_t>(index)]; }
-  Real* DiagonalBlock(int row) { return Block(diagonal_[static_cast<std::size_t>(row)]); }
-  const Real* DiagonalBlock(int row) const { return Block(diagonal_[static_cast<std::size_t>(row)]); }
-  /// Per block what S has there: who writes all blocks himself adds it to their diagonals, and needs no Reset.
+  /// The stored blocks of a row are [storedFirst[row], storedFirst[row + 1]), in the order of the pattern: the last
+  /// ones of its row.
+  std::span<const std::int32_t> storedFirst() const { return storedFirst_; }
+  /// Of the other blocks of all rows, in the order of the pattern, the stored ones that they are the transposes of.
+  std::span<const std::int32_t> mirror() const { return mirror_; }
+  /// The index of the first stored block of a row in the pattern.
+  std::int32_t Diagonal(std::int32_t row) const {
+    const std::size_t r = static_cast<std::size_t>(row);
+    return pattern_.first[r + 1] - (storedFirst_[r + 1] - storedFirst_[r]);
+  }
+  Real* DiagonalBlock(int row) { return Block(storedFirst_[static_cast<std::size_t>(row)]); }
+  const Real* DiagonalBlock(int row) const { return Block(storedFirst_[static_cast<std::size_t>(row)]); }
+  /// Per stored block what S has there: who writes all blocks himself adds it to their diagonals, and needs no Reset.
   std::span<const Real> constant() const { return constant_; }
   /// Sets what S has on the diagonal of a row.
   void SetConstant(int row, Real value) {
@@ -125,7 +137,7 @@ class SystemMatrix {
 
   /// The block of E and B and S on the diagonal, and its inverse, symmetric; both of nine Reals. Where the block is not
   /// positive definite the inverse is of its trace instead.
-  std::array<Real, 9> Diagonal(int row) const;
+  std::array<Real, 9> WholeDiagonal(int row) const;
   const Real* InverseDiagonal(int row) const { return &inverse_[9 * static_cast<std::size_t>(row)]; }
 
   const ExtraRows& extra() const { return extra_; }
@@ -143,10 +155,10 @@ class SystemMatrix {
   std::vector<std::int32_t> restFirst_, restColumn_;
   std::vector<Real> restValue_;
   std::vector<std::uint8_t> pinned_;
-  std::vector<std::int32_t> diagonal_;  // per row: index of its block on the diagonal
-  std::vector<std::int32_t> cleared_;   // blocks in rows and columns of pinned vertices
-  std::vector<Real> constant_;          // per block: what S has there
-  RealVector blocks_, inverse_;         // nine per block or row, and one more at the end
+  std::vector<std::int32_t> storedFirst_, mirror_;
+  std::vector<std::int32_t> cleared_;  // stored blocks in rows and columns of pinned vertices
+  std::vector<Real> constant_;         // per stored block: what S has there
+  RealVector blocks_, inverse_;        // nine per stored block or row, and one more at the end
   ExtraRows extra_;
   std::vector<std::int32_t> extraFirst_, extraOrder_;  // per row the terms that it is in, as 4 term + place
 };

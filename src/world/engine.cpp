@@ -64,14 +64,19 @@ constexpr EngineTable SpringsTable() {
   return table;
 }
 
+/// In a function of its own, so that the meshes are gone when the solver is built.
+fabric::FabricModel BuildFabric(const Scene& scene) {
+  std::vector<RestMesh> meshes;
+  for (const ClothSettings& cloth : scene.cloths) meshes.push_back(MakeClothMesh(cloth));
+  return fabric::BuildModel(scene, meshes);
+}
+
 constexpr EngineTable FabricTable() {
   EngineTable table = CommonTable<FabricEngine>();
   table.name = "fabric";
   table.create = [](const Scene& scene, std::span<const ClothModel>,
                     const Executor& executor) -> std::shared_ptr<void> {
-    std::vector<RestMesh> meshes;
-    for (const ClothSettings& cloth : scene.cloths) meshes.push_back(MakeClothMesh(cloth));
-    return std::make_shared<FabricEngine>(scene, meshes, executor);
+    return std::make_shared<FabricEngine>(scene, BuildFabric(scene), executor);
   };
   table.applyForces = [](void* e, double time, std::span<const Gust> gusts, std::span<const Handle> handles) {
     return Self<FabricEngine>(e).ApplyForces(time, gusts, handles);

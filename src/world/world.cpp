@@ -125,18 +125,19 @@ struct World::Impl {
 };
 
 void World::Impl::Build() {
+  engineState.reset();
   std::vector<ClothModel> models;
   for (const ClothSettings& settings : scene->cloths) models.push_back(MakeModel(settings, scene->simulation.engine));
-  engine = &FindEngine(scene->simulation.engine);
-  engineState = engine->create(*scene, models, executor);
   cloths.clear();
   for (std::size_t c = 0; c < models.size(); ++c) {
-    Cloth cloth;
+    Cloth& cloth = cloths.emplace_back();
     FindSprings(models[c], scene->cloths[c], scene->simulation.engine, cloth.springs, cloth.restLengths);
     cloth.pinned = PinnedVertices(scene->cloths[c]);
-    cloth.model = std::move(models[c]);
-    cloths.push_back(std::move(cloth));
+    models[c].material = std::vector<Vec2>();  // unlike `= {}` that gives the memory back
   }
+  engine = &FindEngine(scene->simulation.engine);
+  engineState = engine->create(*scene, models, executor);
+  for (std::size_t c = 0; c < models.size(); ++c) cloths[c].model = std::move(models[c]);
   Start();
 }
 

@@ -61,13 +61,10 @@ Dense Expected(const Sheet& sheet, const Cloth& cloth, std::span<const ExtraTerm
   AddMembrane(sheet, cloth, membrane);
   const int n = 3 * sheet.vertices();
   Dense dense = Dense::Zero(n, n);
+  membrane.ToDense(dense.data());
   const auto add = [&](int row, int column, const Real* block) {
     for (int k = 0; k < 9; ++k) dense(3 * row + k % 3, 3 * column + k / 3) += static_cast<double>(block[k]);
   };
-  const BlockPattern& pattern = membrane.pattern();
-  for (int row = 0; row < pattern.rows(); ++row) {
-    for (int k = pattern.first[row]; k < pattern.first[row + 1]; ++k) add(row, pattern.column[k], membrane.Block(k));
-  }
   const ScalarMatrix constant = ConstantPart(sheet, cloth);
   for (int row = 0; row < constant.rows(); ++row) {
     for (int k = constant.first[row]; k < constant.first[row + 1]; ++k) {
@@ -208,7 +205,7 @@ TEST_CASE("where a diagonal block is not positive definite, its trace is inverte
     nothing.first.assign(sheet.rest.size() + 1, 0);
     matrix.SetUp(MakePattern(sheet.vertices(), sheet.triangles), nothing);
     matrix.Reset(Serial());
-    Real* block = matrix.Block(matrix.pattern().Find(40, 40));
+    Real* block = matrix.DiagonalBlock(40);
     for (int k = 0; k < 3; ++k) block[4 * k] = diagonal[k];
     matrix.Finish(Serial());
     const Real* inverse = matrix.InverseDiagonal(40);

@@ -160,7 +160,6 @@ inline void AddMembrane(const Sheet& sheet, const Cloth& cloth, fabric::SystemMa
   const double C[3][3] = {{cloth.stiffness, cloth.stiffness * cloth.poisson, 0},
                           {cloth.stiffness * cloth.poisson, cloth.stiffness, 0},
                           {0, 0, cloth.stiffness * (1 - cloth.poisson) / 2}};
-  const auto blocks = fabric::TriangleBlocks(matrix.pattern(), sheet.triangles);
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
     const Triangle& of = sheet.triangles[t];
     const auto g = ShapeGradients(sheet.rest[of.a], sheet.rest[of.b], sheet.rest[of.c]);
@@ -174,7 +173,10 @@ inline void AddMembrane(const Sheet& sheet, const Cloth& cloth, fabric::SystemMa
       }
     }
     for (int pair = 0; pair < 9; ++pair) {
-      fabric::Real* block = matrix.Block(blocks[t][pair]);
+      const std::int32_t corners[3] = {of.a, of.b, of.c};
+      const std::int32_t row = corners[pair / 3], column = corners[pair % 3];
+      if (column < row) continue;  // not stored
+      fabric::Real* block = matrix.DiagonalBlock(row) + 9 * (matrix.pattern().Find(row, column) - matrix.Diagonal(row));
       for (int c = 0; c < 3; ++c) {
         for (int r = 0; r < 3; ++r) {
           double sum = 0;
