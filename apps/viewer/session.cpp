@@ -112,13 +112,26 @@ std::uint64_t Session::Travel(const Change& change, bool forth) {
 void Session::Grip(int cloth, int vertex) {
   const Vec3& at = snapshot().cloths[static_cast<std::size_t>(cloth)].positions[static_cast<std::size_t>(vertex)];
   handles_ = {GripOf(scene_, cloth, vertex, at)};
+  hand_ = at;
   undo_.Push({.label = "Drag", .command = SendHandles(true)});
 }
 
 void Session::MoveGrip(const Vec3& target) {
-  if (handles_.empty() || handles_[0].target == target) return;
-  handles_[0].target = target;
-  if (Check(handles_[0])) return;  // beyond the world
+  hand_ = target;
+  FollowHand();
+}
+
+/// Draws what is gripped to the hand.
+void Session::FollowHand() {
+  if (handles_.empty()) return;
+  Handle handle = handles_[0];
+  handle.target = hand_;
+  const auto cloth = static_cast<std::size_t>(handle.cloth), vertex = static_cast<std::size_t>(handle.vertex);
+  const std::vector<ClothCopy>& cloths = snapshot().cloths;
+  if (playback_.running() && cloth < cloths.size() && vertex < cloths[cloth].positions.size())
+    handle.target = LeadOf(handle, cloths[cloth].positions[vertex], hand_);
+  if (handle == handles_[0] || Check(handle)) return;  // the same, or beyond the world
+  handles_ = {handle};
   SendHandles(false);
 }
 
@@ -313,6 +326,7 @@ void Session::ReadSnapshot(double now) {
       messages_.Set("history", {});
     }
   }
+  if (playback_.running()) FollowHand();  // What it could not reach yet may have come nearer.
   for (const StepReport& report : snapshot().reports) frames_.Add(report);
   Diagnostics problems;
   if (const auto& divergence = snapshot().report.divergence) {

@@ -161,6 +161,7 @@ class Session {
   /// Sends the settings as they are.
   std::uint64_t SendSettings(std::vector<LogLine> lines, bool undoable = false);
   std::uint64_t SendHandles(bool undoable);
+  void FollowHand();
   /// Takes a change back, or does it again; returns the command whose state before it leads back, or 0.
   std::uint64_t Travel(const Change& change, bool forth);
 
@@ -173,6 +174,7 @@ class Session {
   LiveView liveView_;
   FrameTable frames_;
   std::vector<Handle> handles_;
+  Vec3 hand_;  // To where what is gripped is drawn [m].
   struct SaveOrder {
     enum What { Checkpoint, Picture } what;
     View view;
