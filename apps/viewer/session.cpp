@@ -43,6 +43,7 @@ Session::Session(const ViewerOptions& options, GlDevice& device, SessionLog log,
       liveView_(options_, device, log_, messages_, undo_),
       background_(wake),
       wake_(wake),
+      counter_(wake),
       playback_(options.scene, {options.threads, log_.enabled(), options.historyBudget, std::move(wake)}, log_) {
   scene_.look = view().look;
 }
@@ -289,6 +290,10 @@ bool Session::Update(double now) {
     LogState(now);
   news |= ReadReports(background_.TakeReports());
   news |= ReadFilm();
+  if (counter_.TakeNews()) {
+    news = true;
+    LogIntersections();
+  }
   if (const std::string failure = playback_.TakeFailure(); !failure.empty()) {
     messages_.Set("simulation", {MakeError(failure + "; open another scene file to go on, or close the viewer")});
     news = true;
@@ -310,6 +315,7 @@ bool Session::Update(double now) {
 void Session::Begin() {
   CheckSettings();
   liveView_.TellProblems();
+  counter_.Offer(snapshot());
   if (!options_.state) return playback_.StepFrames(options_.frame);
   SendState(source_.file(), options_.state, false);
   if (!options_.set.empty()) SendSettings({DescribeSettings(scene_)});
@@ -326,6 +332,7 @@ void Session::ReadSnapshot(double now) {
       messages_.Set("history", {});
     }
   }
+  counter_.Offer(snapshot());
   if (playback_.running()) FollowHand();  // What it could not reach yet may have come nearer.
   for (const StepReport& report : snapshot().reports) frames_.Add(report);
   Diagnostics problems;
@@ -366,6 +373,17 @@ void Session::LogState(double now) {
                  .Flag("rest", report.atRest)
                  .Number("ms", snapshot().frameSeconds * 1000)
                  .Number("drawn", static_cast<double>(pictures_)));
+}
+
+/// Where the count is another one.
+void Session::LogIntersections() {
+  const auto found = intersections();
+  if (!found || found->count == loggedIntersections_) return;
+  loggedIntersections_ = found->count;
+  log_.Write(LogLine("intersections")
+                 .Number("frame", found->frame)
+                 .Number("count", static_cast<double>(found->count))
+                 .Number("ms", found->seconds * 1000));
 }
 
 std::string Session::Title() const {
