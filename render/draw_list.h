@@ -47,17 +47,23 @@ struct DrawItem {
   bool heatMap = false;              ///< Coloured by the mesh's values, without the shader.
 };
 
-/// One end of a line, or a point.
+/// One end of a line, a corner of a triangle, or a point.
 struct Mark {
   std::array<float, 3> position{};                        ///< [m]
-  std::array<std::uint8_t, 4> color{255, 255, 255, 255};  ///< Red, green, blue, unused.
+  std::array<std::uint8_t, 4> color{255, 255, 255, 255};  ///< Red, green, blue, and of glass how little shines through.
   float size = 1;                                         ///< Of a point: its diameter [pixel].
 };
 
-/// Coloured lines and points over the surfaces, as far as those do not hide them.
+/// Coloured lines, points and triangles over the surfaces, as far as those do not hide them.
 struct Marks {
   std::vector<Mark> lines;  ///< Two each.
   std::vector<Mark> points;
+  std::vector<Mark> triangles;  ///< Three each.
+  std::vector<Mark> glass;      ///< Triangles that one sees through, over all else.
+
+  void Clear() {
+    for (std::vector<Mark>* marks : {&lines, &points, &triangles, &glass}) marks->clear();
+  }
 };
 
 struct DrawList {
@@ -75,6 +81,7 @@ struct DrawList {
   std::vector<DrawItem> items;
   HeatScale heatScale;  ///< Of the items that are heat maps.
   Marks marks;
+  double arrowForce = 0;  ///< Of the longest arrow of contact that there may be [N]; 0: none are drawn.
 };
 
 }  // namespace percale

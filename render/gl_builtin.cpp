@@ -74,7 +74,7 @@ in vec4 v_color;
 out vec4 out_color;
 void main() {
   if (u_points && length(gl_PointCoord - 0.5) > 0.5) discard;
-  out_color = vec4(v_color.rgb, 1.0);
+  out_color = v_color;
 }
 )";
 
@@ -136,15 +136,19 @@ void GlBuiltin::UseHeatMap(const DrawList& list, const Mat4& model) {
 }
 
 void GlBuiltin::DrawMarks(const DrawList& list, int height) {
-  const std::vector<Mark>&lines = list.marks.lines, &points = list.marks.points;
-  if (lines.empty() && points.empty()) return;
+  const Marks& marks = list.marks;
+  const std::vector<Mark>* const all[] = {&marks.triangles, &marks.lines, &marks.points, &marks.glass};
+  constexpr GLenum kPrimitives[] = {GL_TRIANGLES, GL_LINES, GL_POINTS, GL_TRIANGLES};
+  GLsizeiptr bytes = 0;
+  for (const std::vector<Mark>* each : all) bytes += static_cast<GLsizeiptr>(each->size() * sizeof(Mark));
+  if (bytes == 0) return;
   if (!marks_) {
     marks_ = MakeProgram(kMarksVertex, kMarksFragment, {{0, "in_position"}, {1, "in_color"}, {2, "in_size"}});
     glGenVertexArrays(1, &vertexArray_);
     glGenBuffers(1, &buffer_);
     glBindVertexArray(vertexArray_);
     glBindBuffer(GL_ARRAY_BUFFER, buffer_);
-    const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
+    const auto offset = [](std::size_t within) { return reinterpret_cast<const void*>(within); };
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Mark), offset(offsetof(Mark, position)));
     glVertexAttribPointer(1, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Mark), offset(offsetof(Mark, color)));
     glVertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, sizeof(Mark), offset(offsetof(Mark, size)));
@@ -158,17 +162,32 @@ void GlBuiltin::DrawMarks(const DrawList& list, int height) {
 
   glBindVertexArray(vertexArray_);
   glBindBuffer(GL_ARRAY_BUFFER, buffer_);
-  const auto bytes = [](const std::vector<Mark>& marks) {
-    return static_cast<GLsizeiptr>(marks.size() * sizeof(Mark));
-  };
-  glBufferData(GL_ARRAY_BUFFER, bytes(lines) + bytes(points), nullptr, GL_STREAM_DRAW);
-  glBufferSubData(GL_ARRAY_BUFFER, 0, bytes(lines), lines.data());
-  glBufferSubData(GL_ARRAY_BUFFER, bytes(lines), bytes(points), points.data());
-  glUniform1i(glGetUniformLocation(marks_, "u_points"), 0);
-  glDrawArrays(GL_LINES, 0, static_cast<GLsizei>(lines.size()));
+  glBufferData(GL_ARRAY_BUFFER, bytes, nullptr, GL_STREAM_DRAW);
+  GLsizeiptr first = 0;  // [byte]
+  for (const std::vector<Mark>* each : all) {
+    const auto size = static_cast<GLsizeiptr>(each->size() * sizeof(Mark));
+    glBufferSubData(GL_ARRAY_BUFFER, first, size, each->data());
+    first += size;
+  }
   glEnable(GL_PROGRAM_POINT_SIZE);
-  glUniform1i(glGetUniformLocation(marks_, "u_points"), 1);
-  glDrawArrays(GL_POINTS, static_cast<GLint>(lines.size()), static_cast<GLsizei>(points.size()));
+  GLint next = 0;
+  for (std::size_t k = 0; k < std::size(all); ++k) {
+    const auto count = static_cast<GLsizei>(all[k]->size());
+    if (count == 0) continue;
+    const bool glass = all[k] == &marks.glass;
+    if (glass) {
+      glEnable(GL_BLEND);
+      glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+      glDepthMask(GL_FALSE);
+    }
+    glUniform1i(glGetUniformLocation(marks_, "u_points"), kPrimitives[k] == GL_POINTS);
+    glDrawArrays(kPrimitives[k], next, count);
+    if (glass) {
+      glDepthMask(GL_TRUE);
+      glDisable(GL_BLEND);
+    }
+    next += count;
+  }
   glDisable(GL_PROGRAM_POINT_SIZE);
 }
 

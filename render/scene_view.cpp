@@ -16,7 +16,12 @@ namespace {
 constexpr double kWidestLight = 0.98;  // Sine of half the angle that a shadow map covers.
 constexpr Color kPlaneColor{0.7f, 0.7f, 0.7f, 1};
 constexpr Color kOverlayColor{0.08f, 0.08f, 0.08f, 1};
-constexpr double kNormalLength = 0.015;  // of the camera's distance, so that they look as long from anywhere
+// Of the camera's distance, so that they look as large from anywhere: normals; patches of cloth whose contacts are
+// one arrow, and how long and wide that is; the same of cones.
+constexpr double kNormalLength = 0.015;
+constexpr double kPatch = 0.03, kLongestArrow = 0.07, kArrowWidth = 0.0025;
+constexpr double kConePatch = 0.08, kLongestCone = 0.1;
+constexpr double kLeastForce = 1e-6;  // that has the longest arrow [N]
 
 Color Times(const Color& a, const Vec3& b) {
   return {a[0] * float(b.x), a[1] * float(b.y), a[2] * float(b.z), a[3]};
@@ -150,6 +155,7 @@ struct SceneView::Impl {
   HeatMap heatMap;
   ContactFinder contacts;
   BoxFinder boxes;
+  SteadySpan arrowForces = SteadySpan(kLeastForce), coneForces = arrowForces;
   DrawList list;
 
   void UpdateColliders(const Scene& scene, const View& view) {
@@ -182,12 +188,36 @@ struct SceneView::Impl {
     }
   }
 
-  void AddOverlays(const Scene& scene, std::span<const ClothShape> shown, const View& view) {
+  /// Arrows and cones of the contacts, as long as the strongest of them allows.
+  void AddContactForces(std::span<const ClothShape> shown, const View& view, std::span<const ContactForce> forces) {
+    const double distance = view.camera.distance();
+    const bool cones = view.overlays.cones;
+    // Powers of two: while one draws near, patches stay what they are for a while.
+    const double size = std::exp2(std::round(std::log2((cones ? kConePatch : kPatch) * distance)));
+    const std::vector<ContactForce> merged = MergeContacts(shown, forces, size);
+    double most = 0;
+    for (const ContactForce& contact : merged) most = std::max(most, contact.force);
+    list.arrowForce = (cones ? coneForces : arrowForces).Update(most);
+    const ArrowScale scale{.force = list.arrowForce,
+                           .length = (cones ? kLongestCone : kLongestArrow) * distance,
+                           .width = kArrowWidth * distance,
+                           .eye = view.camera.position()};
+    if (cones)
+      AddCones(merged, scale, list.marks);
+    else
+      AddForces(merged, scale, list.marks);
+  }
+
+  void AddOverlays(const Scene& scene, std::span<const ClothShape> shown, const View& view,
+                   std::span<const ContactForce> forces) {
     Marks& marks = list.marks;
     for (std::size_t i = 0; i < shown.size(); ++i) {
       if (view.overlays.normals) AddNormals(*cloths[i].mesh, kNormalLength * view.camera.distance(), marks);
       if (view.overlays.pins) AddPins(shown[i], marks);
     }
+    const bool springs = scene.simulation.engine == Engine::Springs;
+    if (view.ShowsForces() && !springs) AddContactForces(shown, view, forces);
+    if (!springs) return;
     if (view.overlays.contacts) AddContacts(shown, contacts, marks);
     if (!view.overlays.boxes) return;
     std::vector<std::span<const Vec3>> positions;
@@ -217,11 +247,14 @@ const DrawList& SceneView::Update(const World& world, const View& view, int widt
     shapes.push_back({cloth.positions(), cloth.uv(), cloth.triangles(), cloth.springs(), cloth.rest(),
                       cloth.velocities(), cloth.pinned(), cloth.restLengths()});
   }
-  return Update(world.scene(), shapes, view, width, height, world.balls(), world.report().time);
+  std::vector<ContactForce> contacts;
+  if (view.ShowsForces()) contacts = ReadContacts(world);
+  return Update(world.scene(), shapes, view, width, height, world.balls(), world.report().time, contacts);
 }
 
 const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape> cloths, const View& view, int width,
-                                  int height, std::span<const Ball> balls, double time) {
+                                  int height, std::span<const Ball> balls, double time,
+                                  std::span<const ContactForce> contacts) {
   DrawList& list = impl_->list;
   list.viewProjection = view.camera.ViewProjection(width, height);
   list.cameraPosition = view.camera.position();
@@ -237,7 +270,8 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   const bool linesOnly = view.look.shader == "Wireframe" && !heat;
   Bounds casters;
   impl_->cloths.resize(cloths.size());
-  if (view.cloths && (view.heatMap.quantity == Quantity::Contact || view.overlays.contacts))
+  if (view.cloths && (view.heatMap.quantity == Quantity::Contact ||
+                      (view.overlays.contacts && scene.simulation.engine == Engine::Springs)))
     FindContacts(scene, cloths, balls, time, impl_->contacts);
   if (heat) impl_->heatMap.Measure(view.heatMap, cloths, impl_->contacts);
   list.heatScale = heat ? impl_->heatMap.scale() : HeatScale{};
@@ -326,10 +360,10 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
   background.model(2, 3) = list.cameraPosition.z;
   list.items.push_back(std::move(background));
   list.lightViewProjection = FitLight(list.lightPosition, casters);
-  list.marks.lines.clear();
-  list.marks.points.clear();
+  list.marks.Clear();
+  list.arrowForce = 0;
   if (view.cloths) AddTethers(scene, cloths, list.marks);
-  if (view.cloths && view.overlays.Any()) impl_->AddOverlays(scene, cloths, view);
+  if (view.cloths && view.overlays.Any()) impl_->AddOverlays(scene, cloths, view, contacts);
   return list;
 }
 

@@ -35,6 +35,8 @@ struct View {
   UniformValues uniforms;                         ///< Parameters of shaders that differ from their defaults.
   std::array<std::filesystem::path, 4> textures;  ///< PNG files for u_texture_1..4; empty: the project's own.
 
+  /// Whether forces of contact are to be drawn, which are to be read then.
+  bool ShowsForces() const { return cloths && (overlays.contacts || overlays.cones); }
   /// The view that a scene starts with: its look and its camera.
   static View ForScene(const Scene& scene);
 };
@@ -63,9 +65,10 @@ class SceneView {
   /// The draw list of a picture of that size [pixel, >= 1]. Valid until the next call.
   const DrawList& Update(const World& world, const View& view, int width, int height);
   /// The same from copies, for a World that runs on another thread: `cloths` in the scene's order, the colliders where
-  /// they are at `time` [s].
+  /// they are at `time` [s], the contacts where the view asks for their forces.
   const DrawList& Update(const Scene& scene, std::span<const ClothShape> cloths, const View& view, int width,
-                         int height, std::span<const Ball> balls = {}, double time = 0);
+                         int height, std::span<const Ball> balls = {}, double time = 0,
+                         std::span<const ContactForce> contacts = {});
 
  private:
   struct Impl;

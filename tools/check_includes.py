@@ -38,6 +38,7 @@ PUBLIC = {
     "rest_mesh.h": "mesh",
     "fabrics.h": "mesh",
     "interaction.h": "mesh",
+    "contacts.h": "world",
     "intersections.h": "world",
     "parameters.h": "world",
     "world.h": "world",

@@ -14,6 +14,7 @@
 #include "apps/cli/verify_cases.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
+#include "io/cache_kind.h"
 
 namespace percale::cli {
 namespace {
@@ -169,6 +170,11 @@ class Builder {
   void Log(CLI::App& app) {
     app.add_option("LOG", positional_, "A session log that percale view --log has written")->group("Log");
     Threads(app, "Log");
+    Call(app, "-o", "Writes the state after each frame and each thing that was done: .pc2, .obj, .ply or .csv", "FILE",
+         "Output", [this](const std::string& text) {
+           if (!CacheKindOf(TextPath(text))) Refuse("-o", "a file name that ends in .pc2, .obj, .ply or .csv", text);
+           options_.output = text;
+         });
   }
 
   void Length(CLI::App& app, const char* defaultHelp) {
@@ -469,9 +475,11 @@ void AddVerbs(CLI::App& app, Builder& builder) {
                });
   builder.Progress(render);
 
-  CLI::App& replay = verb(Verb::Replay, "Repeats a session of the viewer, and compares every state to the last bit",
-                          "  percale view --log session.log\n"
-                          "  percale replay session.log\n");
+  CLI::App& replay =
+      verb(Verb::Replay, "Repeats a session of the viewer, and compares every state to the last bit",
+           "  percale view --log session.log\n"
+           "  percale replay session.log\n"
+           "  percale replay session.log -o session.pc2         all that was seen, to be judged or rendered\n");
   builder.Log(replay);
   CLI::App& figures = verb(
       Verb::Figures, "Makes all 49 figures of the course's write-up, and a page that shows and measures them",

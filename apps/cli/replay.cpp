@@ -1,16 +1,60 @@
 #include <cinttypes>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "apps/cli/platform.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
 #include "io/atomic_file.h"
+#include "percale/mesh_file.h"
 #include "render/view_file.h"
 #ifdef PERCALE_HAS_VIEWER
 #include "apps/viewer/replay.h"
 #endif
 
 namespace percale::cli {
+#ifdef PERCALE_HAS_VIEWER
+namespace {
+
+/// All that a session has shown, on its way into a file.
+class SessionRecorder {
+ public:
+  explicit SessionRecorder(const std::string& output) : output_(output) {}
+
+  /// Adds the World as it is. False: that failed.
+  bool Add(const World& world) {
+    if (output_.empty()) return true;
+    if (!writer_) {
+      auto writer = CacheWriter::Open(TextPath(output_), 1.0 / world.scene().simulation.framesPerSecond);
+      if (!writer) return Fail(writer.diagnostics());
+      writer_ = std::move(*writer);
+    }
+    const Status added = writer_->Add(world, count_++);
+    return added || Fail(added.diagnostics());
+  }
+  bool Finish() {
+    if (!writer_) return true;
+    const auto files = writer_->Finish();
+    return files || Fail(files.diagnostics());
+  }
+  bool failed() const { return failed_; }
+
+ private:
+  bool Fail(const Diagnostics& why) {
+    PrintDiagnostics(why);
+    failed_ = true;
+    return false;
+  }
+
+  const std::string& output_;
+  std::optional<CacheWriter> writer_;
+  int count_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace
+#endif
 
 int Replay(const Options& options) {
 #ifdef PERCALE_HAS_VIEWER
@@ -20,7 +64,8 @@ int Replay(const Options& options) {
     return kUsage;
   }
   CatchInterrupts();
-  const auto goOn = [](const World&) { return !Interrupted(); };
+  SessionRecorder recorder(options.output);
+  const auto goOn = [&](const World& world) { return recorder.Add(world) && !Interrupted(); };
   const auto load = [](const std::filesystem::path& file) -> Result<WorldState> {
     Result<ViewFile> opened = OpenViewFile(file);
     if (!opened) return opened.diagnostics();
@@ -31,6 +76,8 @@ int Replay(const Options& options) {
       viewer::Replay(TextPath(options.scene), {.threads = options.threads, .loadState = load, .onFrame = goOn});
   PrintDiagnostics(replayed.diagnostics());
   if (!replayed) return kInvalid;
+  if (!recorder.failed()) recorder.Finish();
+  if (recorder.failed()) return kFailed;
   if (Interrupted()) {
     std::fprintf(stderr, "percale: interrupted after %d commands and %d frames\n", replayed->commands,
                  replayed->frames);

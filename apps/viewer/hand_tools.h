@@ -10,6 +10,10 @@ namespace percale::viewer {
 
 /// A grip on a vertex of cloth `index` of the scene, which is at a point.
 Handle GripOf(const Scene& scene, int index, int vertex, const Vec3& at);
+/// The target of a grip that is to lead from where its vertex is to where the hand is: no farther ahead than it has
+/// strength for. A hand that has run away from the cloth while a frame took long, or to where pins do not let it, would
+/// tear at it without bounds.
+Vec3 LeadOf(const Handle& grip, const Vec3& at, const Vec3& hand);
 /// A ball that comes from before a point in a direction.
 Ball BallFrom(const Scene& scene, const Vec3& point, const Vec3& direction);
 /// A second of wind in a direction.

@@ -60,8 +60,8 @@ void DrawConsole(Session& session, UiState& state, float pictureWidth, float hei
 void DrawPalette(Session& session, UiState& state, float width, float height);
 /// The arrows at a sphere or plane that can be moved, that of `axis` brighter.
 void DrawGizmo(const Gizmo& gizmo, int axis, const UiState& state);
-/// What the colours of a heat map mean, below the status line; nothing without one.
-void DrawHeatLegend(const UiState& state);
+/// What the colours of a heat map and the arrows of contacts mean, below the status line; nothing without them.
+void DrawLegends(const UiState& state);
 /// The vertex under the pointer, beside it.
 void DrawInspector(Session& session, UiState& state, int pictureWidth, int height);
 /// Energies, stretch, moves and times of the last frames.

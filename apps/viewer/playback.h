@@ -20,6 +20,8 @@ class Playback {
   /// Takes the newest state, and logs what was carried out. Returns false when there is none since the last call.
   bool Update();
   const Snapshot& snapshot() const { return snapshot_; }  ///< The newest state.
+  /// See Simulation::WantContacts.
+  void WantContacts(bool wanted) { simulation_.WantContacts(wanted); }
   /// See Simulation::TakeFailure.
   std::string TakeFailure() { return simulation_.TakeFailure(); }
 

@@ -43,6 +43,7 @@ Session::Session(const ViewerOptions& options, GlDevice& device, SessionLog log,
       liveView_(options_, device, log_, messages_, undo_),
       background_(wake),
       wake_(wake),
+      counter_(wake),
       playback_(options.scene, {options.threads, log_.enabled(), options.historyBudget, std::move(wake)}, log_) {
   scene_.look = view().look;
 }
@@ -112,13 +113,26 @@ std::uint64_t Session::Travel(const Change& change, bool forth) {
 void Session::Grip(int cloth, int vertex) {
   const Vec3& at = snapshot().cloths[static_cast<std::size_t>(cloth)].positions[static_cast<std::size_t>(vertex)];
   handles_ = {GripOf(scene_, cloth, vertex, at)};
+  hand_ = at;
   undo_.Push({.label = "Drag", .command = SendHandles(true)});
 }
 
 void Session::MoveGrip(const Vec3& target) {
-  if (handles_.empty() || handles_[0].target == target) return;
-  handles_[0].target = target;
-  if (Check(handles_[0])) return;  // beyond the world
+  hand_ = target;
+  FollowHand();
+}
+
+/// Draws what is gripped to the hand.
+void Session::FollowHand() {
+  if (handles_.empty()) return;
+  Handle handle = handles_[0];
+  handle.target = hand_;
+  const auto cloth = static_cast<std::size_t>(handle.cloth), vertex = static_cast<std::size_t>(handle.vertex);
+  const std::vector<ClothCopy>& cloths = snapshot().cloths;
+  if (playback_.running() && cloth < cloths.size() && vertex < cloths[cloth].positions.size())
+    handle.target = LeadOf(handle, cloths[cloth].positions[vertex], hand_);
+  if (handle == handles_[0] || Check(handle)) return;  // the same, or beyond the world
+  handles_ = {handle};
   SendHandles(false);
 }
 
@@ -276,6 +290,10 @@ bool Session::Update(double now) {
     LogState(now);
   news |= ReadReports(background_.TakeReports());
   news |= ReadFilm();
+  if (counter_.TakeNews()) {
+    news = true;
+    LogIntersections();
+  }
   if (const std::string failure = playback_.TakeFailure(); !failure.empty()) {
     messages_.Set("simulation", {MakeError(failure + "; open another scene file to go on, or close the viewer")});
     news = true;
@@ -297,6 +315,7 @@ bool Session::Update(double now) {
 void Session::Begin() {
   CheckSettings();
   liveView_.TellProblems();
+  counter_.Offer(snapshot());
   if (!options_.state) return playback_.StepFrames(options_.frame);
   SendState(source_.file(), options_.state, false);
   if (!options_.set.empty()) SendSettings({DescribeSettings(scene_)});
@@ -313,6 +332,8 @@ void Session::ReadSnapshot(double now) {
       messages_.Set("history", {});
     }
   }
+  counter_.Offer(snapshot());
+  if (playback_.running()) FollowHand();  // What it could not reach yet may have come nearer.
   for (const StepReport& report : snapshot().reports) frames_.Add(report);
   Diagnostics problems;
   if (const auto& divergence = snapshot().report.divergence) {
@@ -352,6 +373,17 @@ void Session::LogState(double now) {
                  .Flag("rest", report.atRest)
                  .Number("ms", snapshot().frameSeconds * 1000)
                  .Number("drawn", static_cast<double>(pictures_)));
+}
+
+/// Where the count is another one.
+void Session::LogIntersections() {
+  const auto found = intersections();
+  if (!found || found->count == loggedIntersections_) return;
+  loggedIntersections_ = found->count;
+  log_.Write(LogLine("intersections")
+                 .Number("frame", found->frame)
+                 .Number("count", static_cast<double>(found->count))
+                 .Number("ms", found->seconds * 1000));
 }
 
 std::string Session::Title() const {

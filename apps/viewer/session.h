@@ -17,6 +17,7 @@
 
 #include "apps/viewer/background.h"
 #include "apps/viewer/frame_table.h"
+#include "apps/viewer/intersection_counter.h"
 #include "apps/viewer/live_view.h"
 #include "apps/viewer/messages.h"
 #include "apps/viewer/playback.h"
@@ -128,6 +129,8 @@ class Session {
   /// The scene files of the folder that the current one is in, by name.
   std::vector<std::filesystem::path> SceneFiles() const { return source_.Files(); }
 
+  /// How often cloth passes through cloth, in the newest frame of which that is known.
+  std::optional<IntersectionCounter::Result> intersections() const { return counter_.result(); }
   FrameTable& frames() { return frames_; }  ///< What the last frames did.
   const FrameTable& frames() const { return frames_; }
   /// Writes some of them as a table into the current folder.
@@ -151,6 +154,7 @@ class Session {
   void CheckSettings();
   void ReadSnapshot(double now);
   void LogState(double now);
+  void LogIntersections();
   /// The one way in which the user changes settings: as a change that can be undone, and that is merged with the one
   /// before it while what `path` names is held. Keeps the state where the cloth is to start anew.
   Status ChangeSettings(const std::string& label, const std::string& path, Scene settings);
@@ -161,6 +165,7 @@ class Session {
   /// Sends the settings as they are.
   std::uint64_t SendSettings(std::vector<LogLine> lines, bool undoable = false);
   std::uint64_t SendHandles(bool undoable);
+  void FollowHand();
   /// Takes a change back, or does it again; returns the command whose state before it leads back, or 0.
   std::uint64_t Travel(const Change& change, bool forth);
 
@@ -173,6 +178,7 @@ class Session {
   LiveView liveView_;
   FrameTable frames_;
   std::vector<Handle> handles_;
+  Vec3 hand_;  // To where what is gripped is drawn [m].
   struct SaveOrder {
     enum What { Checkpoint, Picture } what;
     View view;
@@ -182,12 +188,14 @@ class Session {
   Background background_;
   std::function<void()> wake_;
   std::unique_ptr<Recorder> recorder_;
+  IntersectionCounter counter_;
   Playback playback_;
   std::uint64_t lastApply_ = 0;
   double nextLook_ = 0;    // At the files [s].
   double lastState_ = -1;  // Logged [s].
   bool stateUnlogged_ = false;
   bool toldFull_ = false;  // That the history has reached its budget.
+  std::optional<std::int64_t> loggedIntersections_;
   std::int64_t pictures_ = 0;
 };
 

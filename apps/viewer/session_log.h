@@ -48,6 +48,7 @@
 ///   open     scene: another scene file
 ///   heat_map quantity ("off", "stretch", ...), fixed, and low, high where the range is fixed
 ///   overlays normals, pins, contacts, boxes: whether each is shown
+///   intersections  frame, count, ms: another number of them than before
 ///   plots    visible, held
 ///   export   file: the plots' numbers were written
 ///   inspector visible, held

@@ -67,6 +67,16 @@ std::uint64_t Simulation::Send(Command command) {
   return number;
 }
 
+void Simulation::WantContacts(bool wanted) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (wantsContacts_ == wanted) return;
+    wantsContacts_ = wanted;
+    contactsDue_ = wanted;
+  }
+  wake_.notify_one();
+}
+
 bool Simulation::TakeSnapshot(Snapshot& snapshot) {
   const std::lock_guard lock(mutex_);
   if (!fresh_) return false;
@@ -102,15 +112,16 @@ void Simulation::Loop() {
 void Simulation::LoopOrThrow() {
   for (;;) {
     Command command;
-    bool hasCommand = false;
+    bool hasCommand = false, contactsDue = false;
     {
       std::unique_lock lock(mutex_);
-      const auto awake = [this] { return stop_ || !commands_.empty(); };
+      const auto awake = [this] { return stop_ || !commands_.empty() || contactsDue_; };
       if (mode_ != TimeMode::Paused)
         wake_.wait_until(lock, nextFrame_, awake);
       else
         wake_.wait(lock, awake);
       if (stop_) return;
+      contactsDue = std::exchange(contactsDue_, false);
       if (!commands_.empty()) {
         command = std::move(commands_.front());
         commands_.pop_front();
@@ -123,7 +134,10 @@ void Simulation::LoopOrThrow() {
       continue;
     }
     const Clock::time_point now = Clock::now();
-    if (mode_ == TimeMode::Paused || now < nextFrame_) continue;
+    if (mode_ == TimeMode::Paused || now < nextFrame_) {
+      if (contactsDue) Publish();
+      continue;
+    }
     const auto period = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(1.0 / std::max(1, timeline_.world().scene().simulation.framesPerSecond)));
     nextFrame_ = std::max(nextFrame_ + period, now - kCatchUpFrames * period);
@@ -196,6 +210,16 @@ void Simulation::CopyTopologies() {
 /// Makes the state of the World the newest snapshot.
 void Simulation::Publish() {
   const World& world = timeline_.world();
+  bool wantsContacts = false;
+  {
+    const std::lock_guard lock(mutex_);
+    wantsContacts = wantsContacts_;
+  }
+  back_.contacts.clear();
+  if (wantsContacts && world.scene().simulation.engine == Engine::Fabric) {
+    world.Save(touched_);
+    back_.contacts = ReadContacts(touched_);
+  }
   back_.scene = world.sharedScene();
   back_.cloths.resize(topologies_.size());
   for (std::size_t c = 0; c < topologies_.size(); ++c) {

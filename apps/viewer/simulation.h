@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "apps/viewer/timeline.h"
+#include "percale/contacts.h"
 #include "percale/world.h"
 
 namespace percale::viewer {
@@ -40,6 +41,7 @@ struct Snapshot {
   std::shared_ptr<const Scene> scene;
   std::vector<ClothCopy> cloths;  ///< In the scene's order.
   std::vector<Ball> balls;
+  std::vector<ContactForce> contacts;  ///< Where they are wanted.
   StepReport report;
   HistoryInfo history;
   bool running = false;             ///< In real time.
@@ -73,6 +75,8 @@ class Simulation {
   /// out, unless it is to be undoable.
   std::uint64_t Send(Command command);
 
+  /// Whether snapshots are to tell the forces of contact; if so, there is a new one soon.
+  void WantContacts(bool wanted);
   /// Puts the newest state into `snapshot`, whose memory is used again. Returns false, and leaves it
   /// alone, when there is none since the last call.
   bool TakeSnapshot(Snapshot& snapshot);
@@ -95,6 +99,7 @@ class Simulation {
   std::vector<std::shared_ptr<const ClothTopology>> topologies_;
   std::shared_ptr<const Scene> topologyScene_;  // They are those of its cloths.
   Snapshot back_;
+  WorldState touched_;  // To read contacts from.
   TimeMode mode_ = TimeMode::Paused;
   double frameSeconds_ = 0;
   double framesPerSecond_ = 0;
@@ -109,6 +114,7 @@ class Simulation {
   std::deque<Command> commands_;
   std::uint64_t lastNumber_ = 0;
   bool stop_ = false;
+  bool wantsContacts_ = false, contactsDue_ = false;
   Snapshot ready_;
   bool fresh_ = false;
   std::string failure_;

@@ -31,6 +31,10 @@ void DrawStatisticsPanel(Session& session, UiState& state) {
             Text("%lld cloth, %lld colliders", static_cast<long long>(report.selfContacts),
                  static_cast<long long>(report.colliderContacts)));
   }
+  const auto number = [](std::int64_t count) { return static_cast<long long>(count); };
+  if (report.intersections > 0) FactRow(state, "Tangled yet", Text("%lld pairs", number(report.intersections)));
+  if (report.squeezed > 0) FactRow(state, "Squeezed", Text("%lld vertices", number(report.squeezed)));
+  if (report.lostMotion > 0) FactRow(state, "Cut short", Text("%.2g %% of all motion", report.lostMotion * 100));
   FactRow(state, "Drawing", Text("%.1f ms", state.drawSeconds * 1000));
   if (snapshot.framesPerSecond > 0) FactRow(state, "Speed", Text("%.0f frames/s", snapshot.framesPerSecond));
   const bool open = ImGui::TreeNode("##stages", "A frame of simulation: %.2f ms", state.frameSeconds * 1000);

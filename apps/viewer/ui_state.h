@@ -57,6 +57,7 @@ struct UiState {
   std::optional<NewShaderInput> newShader;
   /// The colours of the last picture, and the range that is being typed for them.
   HeatScale heatScale;
+  double arrowForce = 0;  ///< Of its longest arrow of contact [N]; 0: none.
   ValueRange typedRange;
 
   bool plotsVisible = false;

@@ -254,7 +254,7 @@ class Viewer {
     DrawScene();
     Record();
     for (const PictureOrder& order : session_.TakePictureOrders()) DrawOrder(order);
-    DrawHeatLegend(state_);
+    DrawLegends(state_);
     window_.EndPanels();
     window_.SetTitle(session_.Title());
     LogBoxes();
@@ -319,7 +319,8 @@ class Viewer {
     }
     target->Bind();
     const DrawList& list =
-        sceneView_.Update(*state.scene, shapes_, order.view, size.width, size.height, state.balls, state.report.time);
+        sceneView_.Update(*state.scene, shapes_, order.view, size.width, size.height, state.balls, state.report.time,
+                          order.view.ShowsForces() ? ReadContacts(state) : std::vector<ContactForce>());
     if (const Status drawn = device_.Draw(list, size.width, size.height); !drawn)
       return session_.FailPicture(drawn.diagnostics());
     Image image = target->Read();
@@ -358,6 +359,7 @@ class Viewer {
     const auto [columns, rows] = Pixels();
     const Status drawn = Draw(columns, rows);
     state_.heatScale = scale_;
+    state_.arrowForce = arrowForce_;
     session_.liveView().TellDrawing(drawn, device_.TakeWarnings());
   }
 
@@ -369,9 +371,11 @@ class Viewer {
       shapes_.push_back({cloth.positions, topology.uv, topology.triangles, topology.springs, topology.rest,
                          cloth.velocities, topology.pinned, topology.restLengths});
     }
+    session_.playback().WantContacts(session_.view().ShowsForces());
     const DrawList& list = sceneView_.Update(*snapshot.scene, shapes_, session_.view(), columns, rows, snapshot.balls,
-                                             snapshot.report.time);
+                                             snapshot.report.time, snapshot.contacts);
     scale_ = list.heatScale;
+    arrowForce_ = list.arrowForce;
     return device_.Draw(list, columns, rows);
   }
 
@@ -424,7 +428,8 @@ class Viewer {
   std::vector<ClothShape> shapes_;
   std::optional<RenderTarget> filmTarget_;
   std::vector<std::vector<Vec3>> orderVelocities_;      // Of a picture for a file.
-  HeatScale scale_;                                     // Of what was drawn last.
+  HeatScale scale_;                                     // Of what was drawn last...
+  double arrowForce_ = 0;                               // ...and of its longest arrow [N].
   std::map<std::string, Box> lastBoxes_, loggedBoxes_;  // Of the last picture, and as the log has them.
   int width_ = 0, height_ = 0;                          // Of the window [screen unit].
   std::int64_t smoothedStep_ = 0;

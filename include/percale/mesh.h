@@ -30,7 +30,7 @@ struct Touch {
   std::int32_t kind = 0;                 ///< 0: a vertex and a triangle; 1: two edges; 2: a vertex and a solid.
   std::array<std::int32_t, 4> number{};  ///< Their vertices, of all cloths and then of obstacles; or the vertex and the
                                          ///< number of the solid.
-  Vec3 hold;                             ///< Force of friction on the first [N].
+  Vec3 hold;                             ///< Force of friction on the second [N].
   double force = 0;                      ///< That presses them together [N].
   friend bool operator==(const Touch&, const Touch&) = default;
 };

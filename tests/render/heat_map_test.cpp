@@ -159,7 +159,7 @@ TEST_CASE("heat maps and overlays leave no trace in the pictures after them") {
   Painter painter = Must(Painter::Open({.root = ".", .width = kWidth, .height = kHeight, .samples = 1}));
   View other = sheet.view;
   other.heatMap = {Quantity::Stretch, {}};
-  other.overlays = {true, true, true, true};
+  other.overlays = {true, true, true, true, true};
   other.wireframe = true;
   CHECK_FALSE(Same(sheet.Paint(painter, other), before));
   CHECK(Same(sheet.Paint(painter, sheet.view), before));
@@ -276,6 +276,73 @@ TEST_CASE("an automatic range is round, holds every value, and does not flicker"
   CHECK(span.Update(0.011) == doctest::Approx(0.02));
   CHECK(span.Update(1e-9) == doctest::Approx(1e-3));
   for (int i = 1; i < 1000; ++i) CHECK(span.Update(i * 0.0137) >= i * 0.0137);
+}
+
+TEST_CASE("contacts of one patch of cloth are one arrow, and no force is lost") {
+  // On a sheet of four points, 0.1 m apart: two contacts near each other, one on the other side of the cloth, one far
+  // off; and one with the second sheet, which both sheets have.
+  const std::vector<Vec3> rest = {{0.01, 0, 0}, {0.02, 0, 0}, {0.31, 0, 0}, {0.41, 0, 0}};
+  ClothShape shapes[2];
+  shapes[0].rest = shapes[1].rest = rest;
+  const auto contact = [](int vertex, const Vec3& normal, double force) {
+    ContactForce one;
+    one.vertex = vertex;
+    one.normal = normal;
+    one.point = {0.1 * vertex, 0, 0};
+    one.force = force;
+    one.coefficient = 0.5;
+    one.friction = {0, 0, 0.5 * force};
+    one.slides = true;
+    return one;
+  };
+  std::vector<ContactForce> contacts = {contact(0, {0, 1, 0}, 1), contact(1, {0, 1, 0}, 2), contact(1, {0, -1, 0}, 3),
+                                        contact(2, {0, 1, 0}, 4)};
+  contacts[1].slides = false;
+  contacts.push_back(contact(3, {0, 1, 0}, 5));
+  contacts.back().otherCloth = 1;
+  const std::vector<ContactForce> merged = MergeContacts(shapes, contacts, 0.1);
+  REQUIRE(merged.size() == 5);
+  CHECK(merged[0].Total() == Vec3{0, 3, 1.5});
+  CHECK(merged[0].point == Vec3{0.1, 0, 0});  // of the contact next to the middle of the patch
+  CHECK_FALSE(merged[0].slides);
+  CHECK(merged[1].Total() == Vec3{0, -3, 1.5});
+  CHECK(merged[1].slides);
+  CHECK(merged[2].Total() == Vec3{0, 4, 2});
+  CHECK(merged[3].Total() == Vec3{0, 5, 2.5});
+  CHECK(merged[4].cloth == 1);
+  CHECK(merged[4].Total() == Vec3{0, -5, -2.5});
+  CHECK(MergeContacts(shapes, contacts, 10).size() == 4);
+
+  Marks marks;
+  AddForces(std::span(merged).first(1), {.force = 6, .length = 0.2, .width = 0.001, .eye = {0, 0, 9}}, marks);
+  REQUIRE(marks.points.size() == 1);
+  CHECK(marks.points[0].color == std::array<std::uint8_t, 4>{0, 158, 115, 255});
+  float top = 0;
+  for (const Mark& mark : marks.triangles) top = std::max(top, mark.position[1]);
+  CHECK(top == doctest::Approx(0.1));
+}
+
+TEST_CASE("the force of what slides ends on the rim of its cone") {
+  ContactForce contact;
+  contact.normal = {0, 1, 0};
+  contact.force = 4;
+  contact.coefficient = 0.5;
+  contact.friction = {2, 0, 0};
+  contact.slides = true;
+  Marks marks;
+  AddCones(std::span(&contact, 1), {.force = 16, .length = 0.2, .width = 0.001, .eye = {0, 0, 9}}, marks);
+  // Half as high as one of four times the force, and half as wide as high.
+  for (const Mark& mark : marks.lines) {
+    CHECK(mark.position[1] == doctest::Approx(0.1));
+    CHECK(std::hypot(mark.position[0], mark.position[2]) == doctest::Approx(0.05));
+  }
+  bool ends = false;
+  for (const Mark& mark : marks.triangles) {
+    ends |= std::abs(mark.position[0] - 0.05f) < 1e-6f && std::abs(mark.position[1] - 0.1f) < 1e-6f;
+    CHECK(mark.position[1] < 0.101f);
+  }
+  CHECK(ends);
+  CHECK(marks.glass.size() == 3 * 24);
 }
 
 TEST_CASE("ticks are round numbers, and texts as short as they can be") {

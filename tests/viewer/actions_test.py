@@ -31,6 +31,7 @@ CHECKS = {
     "normals": ("overlays", {}),
     "pins": ("overlays", {}),
     "contacts": ("overlays", {}),
+    "cones": ("overlays", {"cones": True}),
     "boxes": ("overlays", {}),
     "inspector": ("inspector", {}),
     "hold_vertex": ("inspector", {"held": True}),

@@ -23,6 +23,17 @@ Scene Square(double width, int points) {
 
 }  // namespace
 
+TEST_CASE("a hand leads cloth, and does not tear at it from afar") {
+  const Handle grip = GripOf(Square(1, 50), 0, 1, {});
+  const Vec3 at{1, 2, 3}, near = at + Vec3{0, 0.01, 0}, far = at + Vec3{0, 30, 40};
+  CHECK(LeadOf(grip, at, at) == at);
+  CHECK(LeadOf(grip, at, near) == near);
+  const Vec3 lead = LeadOf(grip, at, far) - at;
+  CHECK(Length(lead) > grip.radius);
+  CHECK(Length(lead) < 2 * grip.radius);
+  CHECK(Dot(lead, far - at) == doctest::Approx(Length(lead) * 50));
+}
+
 TEST_CASE("the hand's tools will do for cloths of any size, and for none") {
   for (const double width : {1e-3, 1.0, 1e3}) {
     for (const int points : {2, 50, 1000}) {

@@ -38,12 +38,28 @@ class HeatMaps(ViewerTest):
             since = viewer.mark()
             viewer.click("heat map fixed")
             self.assertFalse(viewer.wait("heat_map", since)["fixed"])
-            for name in ("normals", "pins", "contacts", "boxes"):
+            for name in ("normals", "pins", "contacts", "cones", "boxes"):
                 since = viewer.mark()
                 viewer.click("overlay " + name)
                 self.assertTrue(viewer.wait("overlays", since)[name])
             viewer.step()
             self.assertEqual(viewer.stderr(), "")
+
+
+class Contacts(ViewerTest):
+    def test_forces_of_contact_and_what_passes_through_what(self):
+        with self.viewer(scene("layers"), "--set", "simulation.engine=fabric", "--set",
+                         "cloth.fabric=cotton") as viewer:
+            for key, action in (("o", "contacts"), ("f", "cones")):
+                since = viewer.key(key, action)
+                self.assertTrue(viewer.wait("overlays", since)[action])
+            viewer.step()
+            self.assertEqual(viewer.wait("intersections")["count"], 0)
+            self.assertEqual(viewer.stderr(), "")
+        # Springs push points apart and not triangles: some frames do have intersections.
+        with self.viewer(scene("layers")) as viewer:
+            viewer.key("p", "pause")
+            viewer.wait("intersections", where=lambda e: e["count"] > 0)
 
 
 class Inspecting(ViewerTest):

@@ -231,3 +231,26 @@ TEST_CASE("of places to seek, and of handles, that wait the newest alone acts, u
   const auto restored = simulation.Send({.kind = Command::Kind::Restore, .before = first});
   CHECK(WaitFor(simulation, snapshot, restored).failure.empty());
 }
+
+TEST_CASE("snapshots tell the forces of contact where they are wanted, at once even while paused") {
+  Scene scene = SmallScene();
+  scene.simulation.engine = Engine::Fabric;
+  scene.cloths[0].pinned.clear();
+  scene.cloths[0].contactDistance = 0.01;
+  scene.simulation.framesPerSecond = 60;
+  scene.simulation.stepsPerFrame = 1;
+  scene.planes.push_back({.point = {0, 0.9902, 0}, .normal = {0, 1, 0}, .friction = 0.5});
+  Simulation simulation(scene, {.threads = 1});
+  Snapshot snapshot;
+  WaitFor(simulation, snapshot, Steps(simulation, 60));
+  CHECK(snapshot.contacts.empty());
+  simulation.WantContacts(true);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!simulation.TakeSnapshot(snapshot) && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  CHECK(snapshot.report.frame == 60);
+  CHECK(snapshot.contacts.size() == 144);
+  simulation.WantContacts(false);
+  WaitFor(simulation, snapshot, Steps(simulation, 1));
+  CHECK(snapshot.contacts.empty());
+}
