@@ -115,7 +115,7 @@ class SystemMatrix {
   std::span<const Real> constant() const { return constant_; }
   /// Sets what S has on the diagonal of a row.
   void SetConstant(int row, Real value) {
-    constant_[static_cast<std::size_t>(diagonal_[static_cast<std::size_t>(row)])] = value;
+    constant_[static_cast<std::size_t>(storedFirst_[static_cast<std::size_t>(row)])] = value;
   }
   /// Sets E. Allocates only when there is more of it than ever before. Leaving it out keeps E.
   void SetExtra(std::span<const ExtraTerm> terms, const Executor& executor);
