@@ -16,7 +16,7 @@ namespace percale {
 struct Obstacle {
   int collider = 0;         ///< Index among Scene::colliders.
   std::int32_t first = 0;   ///< Its first vertex among those of all obstacles.
-  std::vector<Vec3> local;  ///< Its vertices, in the collider's frame [m].
+  std::vector<Vec3> local;  ///< Its vertices, in the collider's frame, without its cache [m].
 };
 
 class Obstacles {

@@ -9,6 +9,7 @@
 #include "mesh/collider_mesh.h"
 #include "mesh/pins.h"
 #include "mesh/rest_mesh.h"
+#include "mesh/vertex_cache.h"
 #include "percale/parameters.h"
 #include "world/limits.h"
 
@@ -30,6 +31,8 @@ constexpr int kMostStepsPerFrame = 100000;
 constexpr std::size_t kLongestShaderName = 100;
 /// Of more pins not all pairs are compared.
 constexpr std::size_t kMostComparedPins = 500;
+/// Between two samples of a cache [s].
+constexpr double kShortestSample = 1e-5, kLongestSample = 1e4;
 /// At so many times of a motion that turns.
 constexpr int kPartsOfTurn = 8;
 /// Of a list of a million wrong pins nobody reads more.
@@ -346,6 +349,7 @@ class Checker {
       Warn(path, "only the engine \"fabric\" heeds this");
       return;
     }
+    CheckCache(c);
     if (collider.shape != ColliderShape::Mesh) return;
     if (collider.mesh.empty()) {
       Error(path + "/mesh", "expected the file of a mesh, .obj or .ply, got none");
@@ -357,6 +361,37 @@ class Checker {
                " one triangle only, so it has no inside, and cloth that comes from behind is drawn "
                "through; set this to true, or close the mesh");
     }
+  }
+
+  void CheckCache(std::size_t c) {
+    const ColliderSettings& collider = scene_.colliders[c];
+    const std::string path = "/collider/" + std::to_string(c);
+    if (collider.cache.empty()) {
+      for (const char* const key : {"cache_rate", "cache_start"}) {
+        const Parameter& parameter = *FindParameter("collider", key);
+        if (parameter.get(scene_, c) != DefaultValue(parameter))
+          Warn(path + "/" + key, "the collider has no `cache` that it could belong to");
+      }
+      return;
+    }
+    if (collider.shape != ColliderShape::Mesh) {
+      Error(path + "/cache", "expected none, for only the shape \"mesh\" has vertices that could move, got " +
+                                 Quote(collider.cache, 40));
+      return;
+    }
+    if (!collider.loaded) return;  // told at the mesh
+    if (LacksCache(collider)) {
+      Error(path + "/cache", Quote(collider.cache, 80) + " is not loaded with these settings; call LoadMeshes first");
+      return;
+    }
+    const double seconds = SampleSeconds(scene_, collider);
+    const bool fits = seconds >= kShortestSample && seconds <= kLongestSample;
+    if (collider.loadedCache->samples == 1 || collider.cacheRate > 0 || fits) return;
+    Error(path + "/cache", "the file states " + FormatNumber(RoundDown(collider.loadedCache->spacing, 4)) +
+                               " from sample to sample, which is " + FormatNumber(RoundDown(seconds, 4)) +
+                               " s here; expected from " + FormatNumber(kShortestSample) + " to " +
+                               FormatNumber(kLongestSample) +
+                               " s; state the samples per second in `cache_rate`, such as 24");
   }
 
   void CheckColliderMotion(std::size_t m) {
