@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -28,6 +29,16 @@ struct CloseFile {
 /// The number of the vertex in the mesh's file.
 std::size_t SourceOf(const RestMesh& mesh, std::size_t vertex) {
   return mesh.source.empty() ? vertex : static_cast<std::size_t>(mesh.source[vertex]);
+}
+
+/// `numbers`: of a sample.
+float GreatestMove(const VertexCache& cache, std::size_t numbers) {
+  float most = 0;
+  for (std::size_t k = numbers; k < cache.positions.size(); k += 3) {
+    const auto way = [&](std::size_t axis) { return cache.positions[k + axis] - cache.positions[k + axis - numbers]; };
+    most = std::max(most, std::hypot(way(0), way(1), way(2)));
+  }
+  return most;
 }
 
 }  // namespace
@@ -95,6 +106,7 @@ Result<VertexCache> LoadVertexCache(const fs::path& file, const RestMesh& mesh, 
       }
     }
   }
+  cache.greatestMove = GreatestMove(cache, 3 * mesh.positions.size());
   return cache;
 }
 

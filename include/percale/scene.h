@@ -182,6 +182,7 @@ struct ColliderMotion {
   bool ownCentre = true;  ///< The axis runs through the collider's position; ignore `centre`.
   Vec3 centre{};          ///< A point of the axis [m].
   bool steady = false;    ///< At constant speed from start to end, not smoothly from rest to rest.
+  bool jump = false;      ///< All at once at `end`, with no way between: cloth there is not swept along but pulled out.
 };
 
 /// Engine::Springs: a viscous wind after Provot 1995, section 3.2: each point feels

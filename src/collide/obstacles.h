@@ -33,6 +33,8 @@ class Obstacles {
 
   int vertices() const { return vertices_; }
   std::span<const Obstacle> all() const { return all_; }
+  /// Those of no triangle, of vertices of all obstacles: edges and rims of solids.
+  std::span<const Edge> loneEdges() const { return edges_; }
   /// Where their vertices are at `time` [s]. `positions`: vertices() of them [m].
   void PlaceAt(const Scene& scene, double time, std::span<Vec3> positions) const;
 

@@ -20,6 +20,8 @@ std::size_t Z(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
+/// A volume below this share of the cube of the box's diagonal is none.
+constexpr double kFlat = 1e-9;
 /// Edges that are on the mean so many times longer or shorter are those of another mesh, or in another unit.
 constexpr double kOtherSize = 3;
 
@@ -85,14 +87,21 @@ Diagnostics TurnOutwards(RestMesh& mesh) {
   Diagnostics warnings;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const Piece& piece = pieces[k];
-    if (piece.open || !(piece.volume < 0)) continue;
+    if (piece.open) continue;
+    const Vec3 box = piece.high - piece.low;
+    const std::string which = pieces.size() == 1 ? "the mesh" : "piece " + std::to_string(k) + " of the mesh";
+    if (std::abs(piece.volume) <= kFlat * Dot(box, box) * Length(box)) {
+      warnings.push_back(MakeWarning(which +
+                                     " is flat: it is closed and has no volume, so it has no inside; leave one of "
+                                     "its two sides out and set `two_sided` to true, or give it a thickness"));
+      continue;
+    }
+    if (!(piece.volume < 0)) continue;
     if (std::any_of(pieces.begin(), pieces.end(), [&](const Piece& other) { return piece.Within(other); })) continue;
     turned[k] = true;
-    warnings.push_back(
-        MakeWarning((pieces.size() == 1 ? "the mesh is inside out: its volume is "
-                                        : "piece " + std::to_string(k) + " of the mesh is inside out: its volume is ") +
-                    FormatNumber(-RoundDown(-piece.volume * (1 + kRounding), 3)) +
-                    " m^3; its triangles are turned over, to face outwards; do so in the file as well"));
+    warnings.push_back(MakeWarning(which + " is inside out: its volume is " +
+                                   FormatNumber(-RoundDown(-piece.volume * (1 + kRounding), 3)) +
+                                   " m^3; its triangles are turned over, to face outwards; do so in the file as well"));
   }
   if (warnings.empty()) return warnings;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -517,6 +517,8 @@ std::vector<Parameter> MakeTable() {
       .help = "The axis runs through the collider's position; false as soon as `centre` is stated."}),
     Turn<&M::steady>({.name = "steady", .label = "Steady",
       .help = "At constant speed from start to end, not smoothly from rest to rest."}),
+    Turn<&M::jump>({.name = "jump", .label = "Jump",
+      .help = "All of it at once at `end`, with no way between: cloth that is there is pulled out; false: swept along."}),
 
     Wind<&WindSettings::velocity>({.name = "velocity", .label = "Velocity", .unit = "m/s", .min = -1e4, .max = 1e4,
       .typicalMin = -20, .typicalMax = 20, .help = "Of the air; a breeze is 5, a storm 25."}),

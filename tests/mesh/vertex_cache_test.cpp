@@ -21,7 +21,7 @@ Scene Triangles(double spacing) {
   mesh.mesh.positions = {{5, 5, 5}, {1, 0, 0}, {0, 1, 0}};
   mesh.mesh.triangles = {{0, 1, 2}};
   collider.loaded = std::make_shared<const LoadedMesh>(mesh);
-  VertexCache cache{"a.pc2", spacing, 3, {}};
+  VertexCache cache{"a.pc2", spacing, 3, 0, {}};
   for (const float x : {0.0f, 1.0f, 4.0f})
     cache.positions.insert(cache.positions.end(), {x, 0, 0, 1, 0, 0, 0, 1, x > 1 ? 2.0f : 0.0f});
   collider.loadedCache = std::make_shared<const VertexCache>(cache);

@@ -59,7 +59,7 @@ inline ColliderSettings Body(const std::function<Vec3(const Vec3&, double time)>
   body.cacheRate = rate;
   LoadedMesh loaded{body.mesh, {}, MakeTube(), 0};
   loaded.options.weld = true;
-  VertexCache cache{body.cache, 1, static_cast<std::int32_t>(std::lround(seconds * rate)) + 1, {}};
+  VertexCache cache{body.cache, 1, static_cast<std::int32_t>(std::lround(seconds * rate)) + 1, 0, {}};
   for (std::int32_t s = 0; s < cache.samples; ++s) {
     for (const Vec3& x : loaded.mesh.positions) {
       const Vec3 p = motion(x, s / rate);

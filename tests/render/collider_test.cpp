@@ -205,7 +205,7 @@ TEST_CASE("a mesh that moves by a cache is drawn where its vertices are at the t
                                  [](const ColliderSettings& c) { return c.shape == ColliderShape::Mesh; });
   REQUIRE(mesh != room.scene.colliders.end());
   const std::vector<Vec3>& rest = mesh->loaded->mesh.positions;
-  VertexCache cache{"a.pc2", 1, 2, {}};
+  VertexCache cache{"a.pc2", 1, 2, 0, {}};
   for (const double y : {0.0, 2.0}) {
     for (const Vec3& p : rest) {
       for (const double x : {p.x, p.y + y, p.z}) cache.positions.push_back(static_cast<float>(x));
