@@ -281,6 +281,7 @@ class Importer {
     mesh.groups = VertexGroups(soup_, kept);
     mesh.source.resize(mesh.positions.size());
     std::iota(mesh.source.begin(), mesh.source.end(), 0);
+    mesh.sourceCount = static_cast<std::int32_t>(mesh.positions.size());
     if (cut.triangles.empty()) {
       messages_.Add(MakeError(source_.file(), "no triangle is left after welding; lower the distance " +
                                                   FormatNumber(options_.weldDistance) + " m"));

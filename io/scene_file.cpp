@@ -1,6 +1,7 @@
 #include "percale/scene_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "io/json_document.h"
 #include "mesh/cloth_model.h"
 #include "mesh/collider_mesh.h"
+#include "mesh/vertex_cache.h"
 #include "percale/fabrics.h"
 #include "percale/mesh_file.h"
 #include "percale/parameters.h"
@@ -49,10 +51,11 @@ bool HasToRead(const ColliderSettings& collider) {
 }
 
 /// What only colliders need done.
-Diagnostics Finish(const ClothSettings&, LoadedMesh&) {
+Diagnostics Finish(ClothSettings&, LoadedMesh&) {
   return {};
 }
-Diagnostics Finish(const ColliderSettings&, LoadedMesh& loaded) {
+Diagnostics Finish(ColliderSettings& collider, LoadedMesh& loaded) {
+  collider.loadedCache.reset();  // it was read for another mesh
   loaded.openEdges = CountOpenEdges(loaded.mesh);
   return TurnOutwards(loaded.mesh);
 }
@@ -70,6 +73,21 @@ Status ReadMesh(const Scene& scene, auto& settings) {
     warnings.push_back(std::move(warning));
   }
   settings.loaded = std::make_shared<const LoadedMesh>(std::move(loaded));
+  return {std::monostate{}, std::move(warnings)};
+}
+
+/// Of a collider that holds its mesh.
+Status ReadCache(const Scene& scene, ColliderSettings& collider) {
+  const std::filesystem::path file = MeshFile(scene, collider.cache);
+  Result<VertexCache> cache = LoadVertexCache(file, collider.loaded->mesh, collider.meshScale);
+  if (!cache) return cache.diagnostics();
+  cache->file = collider.cache;
+  Diagnostics warnings = cache.diagnostics();
+  for (Diagnostic& warning : FindCacheProblems(collider.loaded->mesh, *cache, collider.meshScale)) {
+    warning.place.file = PathText(file);
+    warnings.push_back(std::move(warning));
+  }
+  collider.loadedCache = std::make_shared<const VertexCache>(std::move(*cache));
   return {std::monostate{}, std::move(warnings)};
 }
 
@@ -103,6 +121,7 @@ class SceneReader {
     if (scene_.simulation.engine == Engine::Fabric) {
       ReadMeshes("cloth", scene_.cloths);
       ReadMeshes("collider", scene_.colliders);
+      ReadCaches();
     }
     CheckWhole();
     return Finish();
@@ -145,13 +164,25 @@ class SceneReader {
                                       [&](const char* key) { return failed_.count(object + "/" + key) > 0; });
       if (!known || !HasToRead(owners[i])) continue;
       const Status read = ReadMesh(scene_, owners[i]);
-      meshMessages_.insert(meshMessages_.end(), read.diagnostics().begin(), read.diagnostics().end());
-      if (read) continue;
-      const std::string_view parts[] = {group, index, "mesh"};
-      auto [value, path] = Locate({std::begin(parts), std::end(parts)});
-      Error(value, path + ": " + Quote(owners[i].mesh, 80) + " cannot be used; what is wrong with it follows");
-      failed_.insert(object + "/mesh");
+      TakeMessages(read, {group, index, "mesh"}, owners[i].mesh);
     }
+  }
+
+  void ReadCaches() {
+    for (std::size_t i = 0; i < scene_.colliders.size(); ++i) {
+      ColliderSettings& collider = scene_.colliders[i];
+      if (!collider.loaded || !LacksCache(collider)) continue;
+      TakeMessages(ReadCache(scene_, collider), {"collider", std::to_string(i), "cache"}, collider.cache);
+    }
+  }
+
+  /// Of a file that the value at `parts` names.
+  void TakeMessages(const Status& read, const std::array<std::string, 3>& parts, const std::string& file) {
+    meshMessages_.insert(meshMessages_.end(), read.diagnostics().begin(), read.diagnostics().end());
+    if (read) return;
+    auto [value, path] = Locate({parts.begin(), parts.end()});
+    Error(value, path + ": " + Quote(file, 80) + " cannot be used; what is wrong with it follows");
+    failed_.insert("/" + parts[0] + "/" + parts[1] + "/" + parts[2]);
   }
 
   void ReadGroup(const ParameterGroup& group, JsonIndex value) {
@@ -528,26 +559,33 @@ Status LoadMeshes(Scene& scene) {
   };
   if (Status read = readAll(scene.cloths); !read) return read;
   if (Status read = readAll(scene.colliders); !read) return read;
+  for (ColliderSettings& collider : scene.colliders) {
+    if (!collider.loaded || !LacksCache(collider)) continue;
+    const Status read = ReadCache(scene, collider);
+    if (!read) return read.diagnostics();
+    warnings.insert(warnings.end(), read.diagnostics().begin(), read.diagnostics().end());
+  }
   return {std::monostate{}, std::move(warnings)};
 }
 
 Scene WithAbsolutePaths(Scene scene) {
+  const auto rename = [&](std::string& name, auto& loaded) {
+    if (name.empty()) return;
+    std::error_code error;
+    const std::filesystem::path file = std::filesystem::absolute(MeshFile(scene, name), error).lexically_normal();
+    if (error) return;
+    name = PathText(file);
+    if (!loaded) return;
+    auto renamed = *loaded;
+    renamed.file = name;
+    loaded = std::make_shared<const decltype(renamed)>(std::move(renamed));
+  };
   const auto change = [&](auto& owners) {
-    for (auto& owner : owners) {
-      if (owner.mesh.empty()) continue;
-      std::error_code error;
-      const std::filesystem::path file =
-          std::filesystem::absolute(MeshFile(scene, owner.mesh), error).lexically_normal();
-      if (error) continue;
-      owner.mesh = PathText(file);
-      if (!owner.loaded) continue;
-      LoadedMesh loaded = *owner.loaded;
-      loaded.file = owner.mesh;
-      owner.loaded = std::make_shared<const LoadedMesh>(std::move(loaded));
-    }
+    for (auto& owner : owners) rename(owner.mesh, owner.loaded);
   };
   change(scene.cloths);
   change(scene.colliders);
+  for (ColliderSettings& collider : scene.colliders) rename(collider.cache, collider.loadedCache);
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "mesh/topology.h"
@@ -114,13 +115,13 @@ DrawMesh MakeBoxMesh(const Vec3& size) {
 }
 
 /// Smooth where its faces meet at an obtuse angle, with edges elsewhere: every triangle has corners of its own.
-DrawMesh MakeFacetedMesh(const RestMesh& rest) {
+DrawMesh MakeFacetedMesh(const RestMesh& rest, std::span<const Vec3> x) {
   const auto z = [](std::int32_t i) { return static_cast<std::size_t>(i); };
-  const Topology topology = BuildTopology(rest.positions.size(), rest.triangles);
+  const Topology topology = BuildTopology(x.size(), rest.triangles);
   std::vector<Vec3> faces;  // as long as twice the area: the weight
   for (const Triangle& t : rest.triangles) {
-    const Vec3& a = rest.positions[z(t.a)];
-    faces.push_back(Cross(rest.positions[z(t.b)] - a, rest.positions[z(t.c)] - a));
+    const Vec3& a = x[z(t.a)];
+    faces.push_back(Cross(x[z(t.b)] - a, x[z(t.c)] - a));
   }
   DrawMesh mesh;
   std::vector<Vec2> uv;
@@ -134,7 +135,7 @@ DrawMesh MakeFacetedMesh(const RestMesh& rest) {
         if (Dot(own, other) >= kCosSharp * Length(other)) sum += other;
       }
       uv.push_back(rest.uv[z(v)]);
-      mesh.triangles.push_back(AddVertex(mesh, rest.positions[z(v)], UnitOr(sum, own), {}, uv.back()));
+      mesh.triangles.push_back(AddVertex(mesh, x[z(v)], UnitOr(sum, own), {}, uv.back()));
     }
     const auto first = static_cast<std::int32_t>(3 * t);
     triangles.push_back({first, first + 1, first + 2});
@@ -145,7 +146,8 @@ DrawMesh MakeFacetedMesh(const RestMesh& rest) {
 
 }  // namespace
 
-DrawMesh MakeColliderMesh(const ColliderSettings& collider, int latitudes, int longitudes) {
+DrawMesh MakeColliderMesh(const ColliderSettings& collider, int latitudes, int longitudes,
+                          std::span<const Vec3> vertices) {
   assert(latitudes >= 2 && longitudes >= 3);
   const double r = collider.radius, h = collider.length / 2;
   const double piece = 2 * kPi * r / longitudes;  // quads about square
@@ -179,7 +181,8 @@ DrawMesh MakeColliderMesh(const ColliderSettings& collider, int latitudes, int l
       AddArc(r, 0, collider.tubeRadius, 0, 2 * kPi, latitudes, profile);
       break;
     case ColliderShape::Mesh:
-      return collider.loaded ? MakeFacetedMesh(collider.loaded->mesh) : DrawMesh{};
+      if (!collider.loaded) return {};
+      return MakeFacetedMesh(collider.loaded->mesh, vertices.empty() ? collider.loaded->mesh.positions : vertices);
   }
   DrawMesh mesh;
   AddLathe(profile, longitudes, mesh);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collide/poses.h"
+#include "mesh/vertex_cache.h"
 #include "render/heat_map.h"
 
 namespace percale {
@@ -96,12 +97,13 @@ struct ColliderMesh {
   std::shared_ptr<DrawMesh> mesh;
   ColliderSettings settings;
   int latitudes = 0, longitudes = 0;
-  Vec3 low, high;  // Its box, in the collider's frame.
+  Vec3 low, high;              // Its box, in the collider's frame.
+  std::vector<Vec3> vertices;  // Of a mesh with a cache, as drawn.
 };
 
 bool SameSurface(const ColliderSettings& a, const ColliderSettings& b) {
   return a.shape == b.shape && a.size == b.size && a.radius == b.radius && a.length == b.length &&
-         a.tubeRadius == b.tubeRadius && a.loaded == b.loaded;
+         a.tubeRadius == b.tubeRadius && a.loaded == b.loaded && HasCache(a) == HasCache(b);
 }
 
 Mat4 ModelOf(const Pose& pose) {
@@ -158,7 +160,7 @@ struct SceneView::Impl {
   SteadySpan arrowForces = SteadySpan(kLeastForce), coneForces = arrowForces;
   DrawList list;
 
-  void UpdateColliders(const Scene& scene, const View& view) {
+  void UpdateColliders(const Scene& scene, const View& view, double time) {
     const int latitudes = std::max(2, view.sphereLatitudes), longitudes = std::max(3, view.sphereLongitudes);
     if (!sphere || sphereLatitudes != latitudes || sphereLongitudes != longitudes) {
       sphere = std::make_shared<DrawMesh>(MakeSphereMesh(latitudes, longitudes));
@@ -177,11 +179,22 @@ struct SceneView::Impl {
     for (std::size_t i = 0; i < colliders.size(); ++i) {
       ColliderMesh& collider = colliders[i];
       const ColliderSettings& now = scene.colliders[i];
-      if (collider.mesh && SameSurface(collider.settings, now) && collider.latitudes == latitudes &&
-          collider.longitudes == longitudes)
-        continue;
-      collider = {
-          std::make_shared<DrawMesh>(MakeColliderMesh(now, latitudes, longitudes)), now, latitudes, longitudes, {}, {}};
+      std::vector<Vec3> vertices;
+      if (HasCache(now)) {
+        vertices.resize(now.loaded->mesh.positions.size());
+        PlaceVertices(scene, now, time, vertices);
+      }
+      const bool same = collider.mesh && SameSurface(collider.settings, now) && collider.latitudes == latitudes &&
+                        collider.longitudes == longitudes;
+      if (same && vertices == collider.vertices) continue;
+      auto mesh = std::make_shared<DrawMesh>(MakeColliderMesh(now, latitudes, longitudes, vertices));
+      if (same) {
+        mesh->shapeVersion = collider.mesh->shapeVersion + 1;
+        mesh->meshVersion = collider.mesh->meshVersion + 1;
+        std::swap(*collider.mesh, *mesh);
+        mesh = collider.mesh;
+      }
+      collider = {std::move(mesh), now, latitudes, longitudes, {}, {}, std::move(vertices)};
       const Bounds box = BoundsOf(collider.mesh->positions);
       collider.low = box.low;
       collider.high = box.high;
@@ -299,7 +312,7 @@ const DrawList& SceneView::Update(const Scene& scene, std::span<const ClothShape
     casters.Add(box.low, box.high);
   }
 
-  impl_->UpdateColliders(scene, view);
+  impl_->UpdateColliders(scene, view, time);
   if (view.colliders) {
     const auto addSphere = [&](const Vec3& centre, double radius) {
       DrawItem item{impl_->sphere, DrawItem::Primitive::Triangles, view.look.shader, color, {}, false};

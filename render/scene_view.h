@@ -90,8 +90,10 @@ void ComputeTangents(std::span<const float> positions, std::span<const Vec2> uv,
 DrawMesh MakeSphereMesh(int latitudes, int longitudes);
 
 /// A collider in its own frame, its curved surfaces as fine as a sphere of `latitudes` and `longitudes`. A mesh has its
-/// own triangles, with edges where they meet sharply; none while its file is not read.
-DrawMesh MakeColliderMesh(const ColliderSettings& collider, int latitudes, int longitudes);
+/// own triangles, with edges where they meet sharply; none while its file is not read. `vertices`: where those of a
+/// mesh are [m]; none: as in its file.
+DrawMesh MakeColliderMesh(const ColliderSettings& collider, int latitudes, int longitudes,
+                          std::span<const Vec3> vertices = {});
 
 /// The square that stands for a plane: 4 m x 4 m around `point`, with uv 0..1.
 DrawMesh MakePlaneMesh(const Vec3& point, const Vec3& normal);

@@ -36,6 +36,7 @@ PUBLIC = {
     "mesh.h": "mesh",
     "scene.h": "mesh",
     "rest_mesh.h": "mesh",
+    "vertex_cache.h": "mesh",
     "fabrics.h": "mesh",
     "interaction.h": "mesh",
     "contacts.h": "world",

@@ -89,6 +89,8 @@ RunEnd Run(World& world, const RunPlan& plan, const Options& options, const Sess
     sums.selfContacts += report.selfContacts;
     sums.colliderContacts += report.colliderContacts;
     sums.limitedSprings += report.limitedSprings;
+    sums.jumps += report.jumps;
+    sums.mostIntersections = std::max(sums.mostIntersections, report.intersections);
     progress.Update(report);
     if (onFrame() != kDone) return RunEnd::Failed;
     if (plan.untilRest && report.atRest) {

@@ -174,6 +174,12 @@ void PrintSummary(std::FILE* out, const World& world, const RunTotals& totals, R
   std::fprintf(out, "at rest           %s\n", report.atRest ? "yes" : "no");
   std::fprintf(out, "contacts          %lld in the cloth, %lld with colliders\n",
                static_cast<long long>(totals.selfContacts), static_cast<long long>(totals.colliderContacts));
+  if (totals.jumps > 0)
+    std::fprintf(out, "jumps             %lld of colliders\n", static_cast<long long>(totals.jumps));
+  if (totals.mostIntersections > 0) {
+    std::fprintf(out, "intersections     %lld left by the last frame, of at most %lld\n",
+                 static_cast<long long>(report.intersections), static_cast<long long>(totals.mostIntersections));
+  }
   std::fprintf(out, "limited springs   %lld\n", static_cast<long long>(totals.limitedSprings));
   std::fprintf(out, "state             %016llx\n", static_cast<unsigned long long>(world.StateHash()));
   constexpr std::size_t kNamed = 4;

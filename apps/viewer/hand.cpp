@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "apps/viewer/session.h"
 #include "collide/poses.h"
+#include "mesh/vertex_cache.h"
 #include "percale/parameters.h"
 
 namespace percale::viewer {
@@ -45,13 +47,16 @@ std::optional<double> MeetSphere(const Ray& ray, const Vec3& centre, double radi
   return t > 0 ? std::optional(t) : std::nullopt;
 }
 
-/// Where the ray meets a solid, or a mesh, that is placed in the world.
-std::optional<double> MeetCollider(const Ray& ray, const ColliderSettings& collider, const Pose& pose) {
+/// Where the ray meets a collider, a solid or a mesh, as it is at `time` [s].
+std::optional<double> MeetCollider(const Ray& ray, const Scene& scene, int index, double time) {
+  const ColliderSettings& collider = scene.colliders[static_cast<std::size_t>(index)];
+  const Pose pose = PoseOf(scene, index, time);
   const Ray local{ToLocal(pose, ray.origin), TransposedTimes(pose.rotation, ray.direction)};
   if (collider.shape == ColliderShape::Mesh) {
     if (!collider.loaded) return std::nullopt;
-    const RestMesh& mesh = collider.loaded->mesh;
-    const auto hit = PickCloth(local, mesh.positions, mesh.triangles);
+    std::vector<Vec3> positions(collider.loaded->mesh.positions.size());
+    PlaceVertices(scene, collider, time, positions);
+    const auto hit = PickCloth(local, positions, collider.loaded->mesh.triangles);
     return hit ? std::optional(hit->distance) : std::nullopt;
   }
   // As far as the distance at each place is free (Hart 1996, "Sphere tracing").
@@ -230,7 +235,7 @@ void Hand::PressOnThings(const Ray& ray, const InputEvent&, Session& session) {
     const ColliderRef ref{"collider", static_cast<int>(i)};
     if (IsPlane(ref, scene)) {
       considerPlane(ref);
-    } else if (const auto t = MeetCollider(ray, scene.colliders[i], PoseOf(scene, ref.index, snapshot.report.time))) {
+    } else if (const auto t = MeetCollider(ray, scene, ref.index, snapshot.report.time)) {
       consider(ref, ray.origin + ray.direction * *t);
     }
   }

@@ -39,7 +39,10 @@ Diagnostics ApplyOptions(const ViewerOptions& options, const ViewFile& file, Sce
 std::vector<std::string> Meshes(const Scene& scene) {
   std::vector<std::string> files;
   for (const ClothSettings& cloth : scene.cloths) files.push_back(cloth.mesh);
-  for (const ColliderSettings& collider : scene.colliders) files.push_back(collider.mesh);
+  for (const ColliderSettings& collider : scene.colliders) {
+    files.push_back(collider.mesh);
+    files.push_back(collider.cache);
+  }
   return files;
 }
 

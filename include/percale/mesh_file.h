@@ -10,6 +10,7 @@
 
 #include "percale/diagnostic.h"
 #include "percale/rest_mesh.h"
+#include "percale/vertex_cache.h"
 #include "percale/world.h"
 
 namespace percale {
@@ -22,6 +23,10 @@ namespace percale {
 /// column, or the byte of a binary file. Texture coordinates that differ between the corners at a vertex all count for
 /// the rest shape, and for drawing the first.
 Result<RestMesh> LoadMesh(const std::filesystem::path& file, const MeshOptions& options = {});
+
+/// Reads how the vertices of a mesh move from a .pc2 of any program: one point for each vertex of the mesh's file. Its
+/// positions are in the unit of that file, which has `scale` metres. `file` of the result is left empty.
+Result<VertexCache> LoadVertexCache(const std::filesystem::path& file, const RestMesh& mesh, double scale);
 
 /// Takes the frames of one run and writes them by the extension of `file`:
 ///   .csv  one table: frame,cloth,vertex,x,y,z with 17 significant digits

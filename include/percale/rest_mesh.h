@@ -50,6 +50,7 @@ struct RestMesh {
   std::vector<VertexGroup> groups;   ///< In the order in which they were first named.
   std::vector<std::int32_t> source;  ///< Per vertex its number in the file, from 0 (the lowest of those that became
                                      ///< one); empty where it was not read from a file.
+  std::int32_t sourceCount = 0;      ///< Of vertices in the file; 0 where it was not read from one.
   friend bool operator==(const RestMesh&, const RestMesh&) = default;
 };
 

@@ -10,6 +10,7 @@
 
 #include "percale/rest_mesh.h"
 #include "percale/vec3.h"
+#include "percale/vertex_cache.h"
 
 namespace percale {
 
@@ -124,11 +125,15 @@ struct ColliderSettings {
   double tubeRadius = 0.05;  ///< Of the tube of a torus [m], > 0, < radius.
   std::string mesh;          ///< File of a mesh; the path begins at the folder of the scene's file.
   double meshScale = 1;      ///< Metres per unit of that file, > 0.
+  std::string cache;         ///< File of samples by which the mesh's vertices move, .pc2; empty: they do not.
+  double cacheRate = 0;      ///< Its samples per second [1/s], >= 0; 0: as the file states.
+  double cacheStart = 0;     ///< When its first sample is due [s].
   bool twoSided = false;     ///< Of an open mesh: cloth stays out from both sides, not only in front.
   double friction = 0.3;     ///< Coulomb's coefficient, 0..10.
   double thickness = 0;      ///< Cloth keeps so much farther off [m], >= 0.
   Vec3 color{1, 1, 1};       ///< Times the look's base colour, 0..1 each.
-  std::shared_ptr<const LoadedMesh> loaded;  ///< That file, read, its triangles turned outwards: see LoadMeshes.
+  std::shared_ptr<const LoadedMesh> loaded;        ///< That file, read, its triangles turned outwards: see LoadMeshes.
+  std::shared_ptr<const VertexCache> loadedCache;  ///< The file of the cache, read for that mesh.
 };
 
 /// A part of one cloth whose material differs: its triangles with all corners in `group` and in `rectangle`. Several
@@ -177,6 +182,7 @@ struct ColliderMotion {
   bool ownCentre = true;  ///< The axis runs through the collider's position; ignore `centre`.
   Vec3 centre{};          ///< A point of the axis [m].
   bool steady = false;    ///< At constant speed from start to end, not smoothly from rest to rest.
+  bool jump = false;      ///< All at once at `end`, with no way between: cloth there is not swept along but pulled out.
 };
 
 /// Engine::Springs: a viscous wind after Provot 1995, section 3.2: each point feels

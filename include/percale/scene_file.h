@@ -22,14 +22,15 @@ Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins = nu
 /// The same for a text in memory; `name` stands for the file in messages.
 Result<Scene> ParseScene(const std::string& text, const std::string& name, Origins* origins = nullptr);
 
-/// The file of a mesh that a cloth or collider names: a path that is not absolute begins at the folder of `scene.name`.
+/// The file of a mesh or cache that a cloth or collider names: a path that is not absolute begins at the folder of
+/// `scene.name`.
 std::filesystem::path MeshFile(const Scene& scene, const std::string& mesh);
 
-/// Reads the meshes that the cloths of shape Shape::Mesh, and such colliders, name and do not hold yet with these
-/// settings. Changed settings need it before CheckScene accepts them.
+/// Reads the meshes that the cloths of shape Shape::Mesh, and such colliders with their caches, name and do not hold
+/// yet with these settings. Changed settings need it before CheckScene accepts them.
 Status LoadMeshes(Scene& scene);
 
-/// The scene with the paths of its meshes absolute, for a text that is kept elsewhere.
+/// The scene with the paths of its meshes and caches absolute, for a text that is kept elsewhere.
 Scene WithAbsolutePaths(Scene scene);
 
 /// The scene as JSON text that `ParseScene` reads back to the same scene; states every parameter.

@@ -63,9 +63,11 @@ struct StepReport {
   std::int64_t colliderContacts = 0;               ///< Points put back by a collider, summed over the steps.
   std::int64_t limitedSprings = 0;                 ///< Springs shortened by the strain limit, summed over the steps.
   std::int64_t intersections = 0;                  ///< Engine::Fabric: edges of cloth that pass through triangles, left
-                                                   ///< of a start that was tangled; else none can be.
+                                                   ///< of a start that was tangled or of a jump; else none can be.
   std::int64_t squeezed = 0;                       ///< Engine::Fabric: vertices of cloth inside of solids, and of mesh
                                                    ///< colliders that cloth holds up.
+  int jumps = 0;                         ///< Engine::Fabric: colliders that jumped in this frame, as motions say; cloth
+                                         ///< that was there then counts in `intersections` and `squeezed`.
   double lostMotion = 0;                 ///< Engine::Fabric: share of the way of all vertices that was cut off
                                          ///< so that nothing passes through anything, of all steps.
   int splits = 0;                        ///< Engine::Fabric: steps, and parts of steps, that were done over in parts

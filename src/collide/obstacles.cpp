@@ -1,10 +1,12 @@
 #include "collide/obstacles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "collide/poses.h"
 #include "mesh/topology.h"
+#include "mesh/vertex_cache.h"
 
 namespace percale {
 namespace {
@@ -114,9 +116,14 @@ void Obstacles::Configure(const Scene& scene) {
 
 void Obstacles::PlaceAt(const Scene& scene, double time, std::span<Vec3> positions) const {
   for (const Obstacle& obstacle : all_) {
+    const ColliderSettings& collider = scene.colliders[Index(obstacle.collider)];
     const Pose pose = PoseOf(scene, obstacle.collider, time);
-    for (std::size_t v = 0; v < obstacle.local.size(); ++v)
-      positions[Index(obstacle.first) + v] = ToWorld(pose, obstacle.local[v]);
+    const std::span<Vec3> own = positions.subspan(Index(obstacle.first), obstacle.local.size());
+    if (HasCache(collider))
+      PlaceVertices(scene, collider, time, own);
+    else
+      std::copy(obstacle.local.begin(), obstacle.local.end(), own.begin());
+    for (Vec3& x : own) x = ToWorld(pose, x);
   }
 }
 

@@ -16,7 +16,7 @@ namespace percale {
 struct Obstacle {
   int collider = 0;         ///< Index among Scene::colliders.
   std::int32_t first = 0;   ///< Its first vertex among those of all obstacles.
-  std::vector<Vec3> local;  ///< Its vertices, in the collider's frame [m].
+  std::vector<Vec3> local;  ///< Its vertices, in the collider's frame, without its cache [m].
 };
 
 class Obstacles {
@@ -33,6 +33,8 @@ class Obstacles {
 
   int vertices() const { return vertices_; }
   std::span<const Obstacle> all() const { return all_; }
+  /// Those of no triangle, of vertices of all obstacles: edges and rims of solids.
+  std::span<const Edge> loneEdges() const { return edges_; }
   /// Where their vertices are at `time` [s]. `positions`: vertices() of them [m].
   void PlaceAt(const Scene& scene, double time, std::span<Vec3> positions) const;
 

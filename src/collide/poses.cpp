@@ -1,8 +1,17 @@
 #include "collide/poses.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace percale {
+namespace {
+
+double ShareOf(const ColliderMotion& motion, double time) {
+  if (motion.jump) return time >= motion.end ? 1 : 0;
+  return MotionShare(motion.start, motion.end, motion.steady, time);
+}
+
+}  // namespace
 
 Pose PoseOf(const Scene& scene, int collider, double time) {
   const ColliderSettings& settings = scene.colliders[static_cast<std::size_t>(collider)];
@@ -10,7 +19,7 @@ Pose PoseOf(const Scene& scene, int collider, double time) {
   Vec3 way;
   for (const ColliderMotion& motion : scene.colliderMotions) {
     if (motion.collider != collider) continue;
-    const double share = MotionShare(motion.start, motion.end, motion.steady, time);
+    const double share = ShareOf(motion, time);
     way += motion.displacement * share;
     if (motion.angle == 0 || share == 0) continue;
     const Matrix3<double> turn = RotationAbout(UnitOr(motion.axis, {0, 1, 0}), motion.angle * share);
@@ -19,6 +28,12 @@ Pose PoseOf(const Scene& scene, int collider, double time) {
   }
   pose.position += way;
   return pose;
+}
+
+bool Jumps(const Scene& scene, int collider, double before, double after) {
+  return std::any_of(scene.colliderMotions.begin(), scene.colliderMotions.end(), [&](const ColliderMotion& motion) {
+    return motion.jump && motion.collider == collider && ShareOf(motion, before) != ShareOf(motion, after);
+  });
 }
 
 Pose PoseOf(const SphereSettings& sphere) {

@@ -14,6 +14,8 @@ namespace percale {
 /// Where collider `collider` of the scene is at `time` [s]. Depends on nothing else: the same settings and time give
 /// the same bits.
 Pose PoseOf(const Scene& scene, int collider, double time);
+/// Whether a motion lets the collider jump after `before` and until `after` [s].
+bool Jumps(const Scene& scene, int collider, double before, double after);
 /// Of a sphere of the course, and of a plane, whose normal is y in its frame. They do not move.
 Pose PoseOf(const SphereSettings& sphere);
 Pose PoseOf(const PlaneSettings& plane);

@@ -41,7 +41,7 @@ Untangler::Untangler(const ContactMesh& mesh) : mesh_(mesh) {
 }
 
 /// Of the edge: the sum over its triangles of the way that the curve goes on in each, and of what the point where they
-/// meet moves along the edge with that.
+/// meet moves along the edge with that. An edge of no triangle is drawn back from its nearer end.
 Vector3<double> Untangler::WayOf(const Intersection& meeting, std::span<const Vec3> x, const Vector3<double>& normal,
                                  const Vector3<double>& place) const {
   const auto at = [&](std::int32_t v) { return From<double>(x[Index(v)]); };
@@ -49,16 +49,20 @@ Vector3<double> Untangler::WayOf(const Intersection& meeting, std::span<const Ve
   const Vector3<double> e = Unit(at(to) - at(from));
   const double across = Dot(e, normal);
   Vector3<double> way;
+  bool any = false;
   for (std::int32_t k = first_[Index(from)]; k < first_[Index(from) + 1]; ++k) {
     const auto corner = CornersOf(mesh_.triangles[Index(triangle_[Index(k)])]);
     if (std::find(corner.begin(), corner.end(), to) == corner.end()) continue;
+    any = true;
     const std::int32_t opposite = corner[0] + corner[1] + corner[2] - from - to;
     const Vector3<double> inwards = at(opposite) - place;
     Vector3<double> along = Unit(Cross(normal, Cross(e, inwards)));
     if (Dot(along, inwards - e * Dot(e, inwards)) < 0) along = -along;
     way += along - normal * (2 * Dot(e, along) / across);
   }
-  return way;
+  if (any) return way;
+  const Vector3<double> ahead = at(to) - place, behind = place - at(from);
+  return Dot(ahead, ahead) < Dot(behind, behind) ? -e : e;
 }
 
 void Untangler::Find(std::span<const Intersection> met, std::span<const Vec3> x, std::vector<Tangle>& tangles) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collide/predicates.h"
 #include "mesh/topology.h"
 
 namespace percale::fabric {
@@ -128,19 +129,33 @@ void ContactStep::Restart(const Scene& scene, double time) {
   obstacleBefore_ = obstacleTarget_ = obstacle_;
   met_.clear();
   judged_ = listed_ = false;
+  time_ = time;
 }
 
-void ContactStep::MoveColliders(const Scene& scene, double time) {
+int ContactStep::MoveColliders(const Scene& scene, double time) {
+  const auto jumps = [&](int collider) { return collider >= 0 && Jumps(scene, collider, time_, time); };
+  int jumped = 0;
   ListSolids(scene, time, placed_);
   const bool same = solids_.size() == placed_.size();
   solids_.resize(placed_.size());
   for (std::size_t s = 0; s < placed_.size(); ++s) {
     SolidStep& step = solids_[s];
-    step = {same ? step.end : placed_[s], placed_[s]};
+    const bool jump = jumps(placed_[s].collider);
+    jumped += jump ? 1 : 0;
+    step = {same && !jump ? step.end : placed_[s], placed_[s]};
     step.start.solid = step.end.solid;
     step.start.thickness = step.end.thickness;
   }
   obstacles_.PlaceAt(scene, time, obstacleTarget_);
+  for (const Obstacle& obstacle : obstacles_.all()) {
+    if (!jumps(obstacle.collider)) continue;
+    if (scene.colliders[Index(obstacle.collider)].shape == ColliderShape::Mesh) ++jumped;
+    for (std::size_t v = Index(obstacle.first); v < Index(obstacle.first) + obstacle.local.size(); ++v)
+      obstacleBefore_[v] = obstacle_[v] = obstacleTarget_[v];
+  }
+  if (jumped > 0) judged_ = listed_ = false;
+  time_ = time;
+  return jumped;
 }
 
 void ContactStep::Begin(std::span<const Vec3> previous, std::span<const Vec3> start) {
@@ -263,6 +278,7 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
   std::copy(obstacle_.begin(), obstacle_.end(), start_.begin() + static_cast<std::ptrdiff_t>(cloth.size()));
   met_.clear();
   if (distances_.clothPairs || !obstacle_.empty()) met_ = judge_.Count(start_, executor_, kMostTangled).first;
+  JudgeLoneEdges();
   if (!distances_.clothPairs) {
     std::erase_if(met_, [&](const Intersection& met) {
       return std::max(met.edge[1], mesh_.triangles[Index(met.triangle)].a) < mesh_.clothVertices;
@@ -270,6 +286,25 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
   }
   safeMove_.Exempt(met_);
   judged_ = true;
+  listed_ = false;  // A list says which pairs are let be.
+}
+
+/// The edges of solids, of which the judge knows nothing, each against all triangles of cloth: they are few.
+void ContactStep::JudgeLoneEdges() {
+  const auto apart = [](double a, double b, double p, double q, double r) {
+    return std::max(a, b) < std::min({p, q, r}) || std::min(a, b) > std::max({p, q, r});
+  };
+  const std::int32_t first = mesh_.clothVertices;
+  for (const Edge& edge : obstacles_.loneEdges()) {
+    const std::int32_t from = first + std::min(edge.a, edge.b), to = first + std::max(edge.a, edge.b);
+    const Vec3 &a = start_[Index(from)], &b = start_[Index(to)];
+    for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
+      const Triangle& triangle = model_.triangles[t];
+      const Vec3 &p = start_[Index(triangle.a)], &q = start_[Index(triangle.b)], &r = start_[Index(triangle.c)];
+      if (apart(a.x, b.x, p.x, q.x, r.x) || apart(a.y, b.y, p.y, q.y, r.y) || apart(a.z, b.z, p.z, q.z, r.z)) continue;
+      if (SegmentMeetsTriangle(a, b, p, q, r)) met_.push_back({{from, to}, static_cast<std::int32_t>(t)});
+    }
+  }
 }
 
 void ContactStep::ReadState(std::vector<Touch>& touches, std::vector<Vec3>& obstacles) const {

@@ -32,8 +32,9 @@ class ContactStep {
   void Restart(const Scene& scene, double time);
 
   // A step, in this order.
-  /// Leads colliders to where they are at `time` [s], the end of the step.
-  void MoveColliders(const Scene& scene, double time);
+  /// Leads colliders to where they are at `time` [s], the end of the step. Those that jump are there at once; returns
+  /// how many.
+  int MoveColliders(const Scene& scene, double time);
   /// Learns what is near: cloth came from `previous` to `start` in the last step.
   void Begin(std::span<const Vec3> previous, std::span<const Vec3> start);
   /// `firm`: they do not give way to the tension in cloth. Planes for cloth that is at `now` and that inertia would
@@ -50,8 +51,8 @@ class ContactStep {
 
   /// Between two steps: from now towards `end` as far as all can go, colliders at rest.
   void MoveAside(std::span<const Vec3> now, std::span<Vec3> end);
-  /// Pairs of an edge and a triangle that pass through each other, as was last looked: at a start, and at the end of
-  /// each step that began with some; of cloth that is apart none can become any.
+  /// Pairs of an edge and a triangle that pass through each other, as was last looked: at a start, after a jump, and at
+  /// the end of each step that began with some; of cloth that is apart none can become any.
   std::int64_t tangled() const { return static_cast<std::int64_t>(met_.size()); }
 
   /// How many vertices of cloth are inside of solids, and how many of obstacles wait for cloth to make way: what is
@@ -71,6 +72,7 @@ class ContactStep {
 
  private:
   void Judge(std::span<const Vec3> cloth);
+  void JudgeLoneEdges();
 
   const FabricModel& model_;
   const Executor& executor_;
@@ -93,6 +95,7 @@ class ContactStep {
   std::vector<Tangle> tangles_;
   bool judged_ = false;                 // Whether that is known.
   std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid
+  double time_ = 0;                     // where colliders are led to [s]
   double distance_ = 0;
   bool listed_ = false;  // What is near is known.
   int moves_ = 0;        // Of this step.

@@ -112,7 +112,7 @@ void FabricEngine::Reset() {
 void FabricEngine::MoveColliders(double time) {
   time_ = time;
   pins_.MoveTo(time);
-  contact_->MoveColliders(scene_, time);
+  counts_.jumps += contact_->MoveColliders(scene_, time);
 }
 
 bool FabricEngine::ApplyForces(double time, std::span<const Gust> gusts, std::span<const Handle> handles) {

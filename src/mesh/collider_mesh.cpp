@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,11 @@ constexpr double kRounding = 1e-9;  // Generously, of a volume: 0.999999 is told
 std::size_t Z(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
+
+/// A volume below this share of the cube of the box's diagonal is none.
+constexpr double kFlat = 1e-9;
+/// Edges that are on the mean so many times longer or shorter are those of another mesh, or in another unit.
+constexpr double kOtherSize = 3;
 
 /// Triangles that hang together by their vertices.
 struct Piece {
@@ -35,22 +41,28 @@ struct Piece {
   }
 };
 
-std::vector<Piece> FindPieces(const RestMesh& mesh, const Topology& topology) {
+/// `positions`: of the mesh's vertices.
+std::vector<Piece> FindPieces(const RestMesh& mesh, const Topology& topology, std::span<const Vec3> positions) {
   std::vector<Piece> pieces(static_cast<std::size_t>(topology.componentCount));
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    if (topology.component[v] >= 0) pieces[Z(topology.component[v])].Add(mesh.positions[v]);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (topology.component[v] >= 0) pieces[Z(topology.component[v])].Add(positions[v]);
   }
   for (const Triangle& t : mesh.triangles) {
     Piece& piece = pieces[Z(topology.component[Z(t.a)])];
     // Of the tetrahedra over the triangles with a tip near them, so that little is lost by rounding.
-    const Vec3 a = mesh.positions[Z(t.a)] - piece.low, b = mesh.positions[Z(t.b)] - piece.low,
-               c = mesh.positions[Z(t.c)] - piece.low;
+    const Vec3 a = positions[Z(t.a)] - piece.low, b = positions[Z(t.b)] - piece.low, c = positions[Z(t.c)] - piece.low;
     piece.volume += Dot(a, Cross(b, c)) / 6;
   }
   for (const std::vector<std::int32_t>* edges : {&topology.boundaryEdges, &topology.nonManifoldEdges}) {
     for (const std::int32_t e : *edges) pieces[Z(topology.component[Z(topology.edges[Z(e)].a)])].open = true;
   }
   return pieces;
+}
+
+double MeanEdge(const Topology& topology, std::span<const Vec3> positions) {
+  double sum = 0;
+  for (const Edge& e : topology.edges) sum += Length(positions[Z(e.b)] - positions[Z(e.a)]);
+  return sum / static_cast<double>(std::max<std::size_t>(topology.edges.size(), 1));
 }
 
 }  // namespace
@@ -70,19 +82,26 @@ bool LacksMesh(const ColliderSettings& settings) {
 
 Diagnostics TurnOutwards(RestMesh& mesh) {
   const Topology topology = BuildTopology(mesh.positions.size(), mesh.triangles);
-  const std::vector<Piece> pieces = FindPieces(mesh, topology);
+  const std::vector<Piece> pieces = FindPieces(mesh, topology, mesh.positions);
   std::vector<bool> turned(pieces.size());
   Diagnostics warnings;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const Piece& piece = pieces[k];
-    if (piece.open || !(piece.volume < 0)) continue;
+    if (piece.open) continue;
+    const Vec3 box = piece.high - piece.low;
+    const std::string which = pieces.size() == 1 ? "the mesh" : "piece " + std::to_string(k) + " of the mesh";
+    if (std::abs(piece.volume) <= kFlat * Dot(box, box) * Length(box)) {
+      warnings.push_back(MakeWarning(which +
+                                     " is flat: it is closed and has no volume, so it has no inside; leave one of "
+                                     "its two sides out and set `two_sided` to true, or give it a thickness"));
+      continue;
+    }
+    if (!(piece.volume < 0)) continue;
     if (std::any_of(pieces.begin(), pieces.end(), [&](const Piece& other) { return piece.Within(other); })) continue;
     turned[k] = true;
-    warnings.push_back(
-        MakeWarning((pieces.size() == 1 ? "the mesh is inside out: its volume is "
-                                        : "piece " + std::to_string(k) + " of the mesh is inside out: its volume is ") +
-                    FormatNumber(-RoundDown(-piece.volume * (1 + kRounding), 3)) +
-                    " m^3; its triangles are turned over, to face outwards; do so in the file as well"));
+    warnings.push_back(MakeWarning(which + " is inside out: its volume is " +
+                                   FormatNumber(-RoundDown(-piece.volume * (1 + kRounding), 3)) +
+                                   " m^3; its triangles are turned over, to face outwards; do so in the file as well"));
   }
   if (warnings.empty()) return warnings;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -91,6 +110,41 @@ Diagnostics TurnOutwards(RestMesh& mesh) {
     std::swap(triangle.b, triangle.c);
     std::swap(mesh.material[3 * t + 1], mesh.material[3 * t + 2]);
     for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * t + k].y = -mesh.material[3 * t + k].y;
+  }
+  return warnings;
+}
+
+Diagnostics FindCacheProblems(const RestMesh& mesh, const VertexCache& cache, double scale) {
+  const Topology topology = BuildTopology(mesh.positions.size(), mesh.triangles);
+  const std::vector<Piece> pieces = FindPieces(mesh, topology, mesh.positions);
+  const double restEdge = MeanEdge(topology, mesh.positions);
+  std::vector<Vec3> positions(mesh.positions.size());
+  bool otherSize = false, insideOut = false;
+  Diagnostics warnings;
+  for (std::int32_t s = 0; s < cache.samples; ++s) {
+    const float* x = cache.positions.data() + 3 * positions.size() * Z(s);
+    for (Vec3& position : positions) {
+      position = Vec3{double(x[0]), double(x[1]), double(x[2])} * scale;
+      x += 3;
+    }
+    const double ratio = MeanEdge(topology, positions) / restEdge;
+    if (!otherSize && !(ratio < kOtherSize && ratio * kOtherSize > 1)) {
+      otherSize = true;
+      warnings.push_back(
+          MakeWarning("sample " + std::to_string(s) + ": edges of the mesh are " + FormatNumber(RoundDown(ratio, 3)) +
+                      " times as long as in its file; export both in the same unit, with the vertices in "
+                      "the same order"));
+    }
+    const std::vector<Piece> now = FindPieces(mesh, topology, positions);
+    for (std::size_t k = 0; k < pieces.size() && !insideOut; ++k) {
+      if (pieces[k].open || !(pieces[k].volume > 0) || now[k].volume > 0) continue;
+      insideOut = true;
+      warnings.push_back(MakeWarning("sample " + std::to_string(s) + ": " +
+                                     (pieces.size() == 1 ? "the mesh" : "piece " + std::to_string(k) + " of the mesh") +
+                                     " is inside out: its volume is " +
+                                     FormatNumber(-RoundDown(-now[k].volume * (1 + kRounding), 3)) +
+                                     " m^3; what is mirrored or crushed flat cannot hold cloth outside"));
+    }
   }
   return warnings;
 }

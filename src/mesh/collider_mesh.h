@@ -19,6 +19,10 @@ bool LacksMesh(const ColliderSettings& settings);
 /// without a place.
 Diagnostics TurnOutwards(RestMesh& mesh);
 
+/// Warns, without a place, of a cache for that mesh whose edges are of another size than the mesh's, as those of
+/// another vertex order are, and of closed pieces that it turns inside out. The mesh is turned outwards.
+Diagnostics FindCacheProblems(const RestMesh& mesh, const VertexCache& cache, double scale);
+
 /// How many edges have one triangle only: 0 of a closed mesh.
 int CountOpenEdges(const RestMesh& mesh);
 

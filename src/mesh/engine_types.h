@@ -21,6 +21,7 @@ struct Stretch {
 struct EngineCounts {
   std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
   std::int64_t intersections = 0, squeezed = 0;  ///< As the last step left them.
+  int jumps = 0;                                 ///< Of colliders.
   double lostWay = 0, wantedWay = 0;             ///< Of all vertices [m].
   int splits = 0;
   int newtonIterations = 0, linearIterations = 0;

@@ -1,14 +1,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <numbers>
 #include <vector>
 
+#include "collide/shapes.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "mesh/cloth_model.h"
 #include "mesh/collider_mesh.h"
 #include "mesh/pins.h"
 #include "mesh/rest_mesh.h"
+#include "mesh/vertex_cache.h"
 #include "percale/parameters.h"
 #include "world/limits.h"
 
@@ -30,6 +34,8 @@ constexpr int kMostStepsPerFrame = 100000;
 constexpr std::size_t kLongestShaderName = 100;
 /// Of more pins not all pairs are compared.
 constexpr std::size_t kMostComparedPins = 500;
+/// Between two samples of a cache [s].
+constexpr double kShortestSample = 1e-5, kLongestSample = 1e4;
 /// At so many times of a motion that turns.
 constexpr int kPartsOfTurn = 8;
 /// Of a list of a million wrong pins nobody reads more.
@@ -346,6 +352,7 @@ class Checker {
       Warn(path, "only the engine \"fabric\" heeds this");
       return;
     }
+    CheckCache(c);
     if (collider.shape != ColliderShape::Mesh) return;
     if (collider.mesh.empty()) {
       Error(path + "/mesh", "expected the file of a mesh, .obj or .ply, got none");
@@ -359,19 +366,92 @@ class Checker {
     }
   }
 
+  void CheckCache(std::size_t c) {
+    const ColliderSettings& collider = scene_.colliders[c];
+    const std::string path = "/collider/" + std::to_string(c);
+    if (collider.cache.empty()) {
+      for (const char* const key : {"cache_rate", "cache_start"}) {
+        const Parameter& parameter = *FindParameter("collider", key);
+        if (parameter.get(scene_, c) != DefaultValue(parameter))
+          Warn(path + "/" + key, "the collider has no `cache` that it could belong to");
+      }
+      return;
+    }
+    if (collider.shape != ColliderShape::Mesh) {
+      Error(path + "/cache", "expected none, for only the shape \"mesh\" has vertices that could move, got " +
+                                 Quote(collider.cache, 40));
+      return;
+    }
+    if (!collider.loaded) return;  // told at the mesh
+    if (LacksCache(collider)) {
+      Error(path + "/cache", Quote(collider.cache, 80) + " is not loaded with these settings; call LoadMeshes first");
+      return;
+    }
+    const double seconds = SampleSeconds(scene_, collider);
+    const bool fits = seconds >= kShortestSample && seconds <= kLongestSample;
+    if (collider.loadedCache->samples == 1) return;
+    if (collider.cacheRate > 0 || fits) {
+      const double move = collider.meshScale * static_cast<double>(collider.loadedCache->greatestMove);
+      WarnOfLeap(path + "/cache", move * std::min(scene_.TimeStep() / seconds, 1.0), SizeOf(collider),
+                 "lower `cache_rate`");
+      return;
+    }
+    Error(path + "/cache", "the file states " + FormatNumber(RoundDown(collider.loadedCache->spacing, 4)) +
+                               " from sample to sample, which is " + FormatNumber(RoundDown(seconds, 4)) +
+                               " s here; expected from " + FormatNumber(kShortestSample) + " to " +
+                               FormatNumber(kLongestSample) +
+                               " s; state the samples per second in `cache_rate`, such as 24");
+  }
+
   void CheckColliderMotion(std::size_t m) {
     const ColliderMotion& motion = scene_.colliderMotions[m];
     const std::string path = "/collider_motion/" + std::to_string(m);
-    CheckTimes(path, motion.start, motion.end);
+    if (!motion.jump) CheckTimes(path, motion.start, motion.end);
     if (motion.angle != 0) CheckDirection(path + "/axis", motion.axis, "[0, 1, 0] for the vertical");
     const std::size_t colliders = scene_.colliders.size();
-    if (static_cast<std::size_t>(motion.collider) < colliders) return;
+    if (static_cast<std::size_t>(motion.collider) < colliders) {
+      if (motion.end > motion.start && scene_.simulation.engine == Engine::Fabric) WarnOfLeap(path, motion);
+      return;
+    }
     Error(path + "/collider",
           colliders == 0
               ? "there is no collider that could move; state a \"collider\": those of \"sphere\" and \"plane\" do not"
               : "expected the index of a collider, " +
                     (colliders == 1 ? "0 as there is only one" : "from 0 to " + std::to_string(colliders - 1)) +
                     ", got " + std::to_string(motion.collider));
+  }
+
+  /// The longest edge of its box, in its own frame [m].
+  static double SizeOf(const ColliderSettings& collider) {
+    if (collider.shape != ColliderShape::Mesh) {
+      const Vec3 half = HalfExtent(MakeSolid(collider));
+      return 2 * std::max({half.x, half.y, half.z});
+    }
+    if (!collider.loaded) return std::numeric_limits<double>::infinity();
+    Vec3 low = collider.loaded->mesh.positions.front(), high = low;
+    for (const Vec3& x : collider.loaded->mesh.positions) {
+      low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+      high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+    }
+    return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  }
+
+  /// What goes farther in a step than it is large was hardly meant to sweep up all that is on its way.
+  void WarnOfLeap(const std::string& path, const ColliderMotion& motion) {
+    if (motion.jump) return;
+    const ColliderSettings& collider = scene_.colliders[static_cast<std::size_t>(motion.collider)];
+    const double arm = motion.ownCentre ? 0 : Length(collider.position - motion.centre);
+    const double way = Length(motion.displacement) + std::abs(motion.angle) * (std::numbers::pi / 180) * arm;
+    const double fastest = motion.steady ? 1 : 1.5;  // The greatest slope of s² (3 - 2 s).
+    WarnOfLeap(path, way * std::min(fastest * scene_.TimeStep() / (motion.end - motion.start), 1.0), SizeOf(collider),
+               "set `jump` to true if cloth is not to be swept along");
+  }
+  void WarnOfLeap(const std::string& path, double way, double size, const std::string& remedy) {
+    if (!(way > size)) return;
+    Warn(path, "goes up to " + FormatNumber(RoundDown(way, 3)) + " m in a step of " +
+                   FormatNumber(RoundDown(scene_.TimeStep(), 3)) + " s, farther than the collider is large, " +
+                   FormatNumber(RoundDown(size, 3)) + " m; slow it down, raise simulation.steps_per_frame, or " +
+                   remedy);
   }
 
   void CheckTimes(const std::string& path, double start, double end) {

@@ -424,6 +424,14 @@ std::vector<Parameter> MakeTable() {
     Collider<&O::meshScale>({.name = "mesh_scale", .label = "Mesh scale", .unit = "m", .min = 0, .max = 1e6,
       .minExclusive = true, .typicalMin = 0.001, .typicalMax = 10, .logarithmic = true, .effect = kRebuild,
       .help = "Length of one unit of the mesh's file; 0.01 where it is in centimetres."}),
+    Collider<&O::cache>({.name = "cache", .label = "Vertex cache", .effect = kRebuild,
+      .help = "File of samples by which the mesh's vertices move, .pc2, one point per vertex of the mesh's file."}),
+    Collider<&O::cacheRate>({.name = "cache_rate", .label = "Samples/s", .unit = "1/s", .min = 0, .max = kMostSteps,
+      .typicalMin = 0, .typicalMax = 120,
+      .help = "Samples of the cache per second; 0: as its file states, below 0.2 in seconds, else in frames of the scene."}),
+    Collider<&O::cacheStart>({.name = "cache_start", .label = "Cache's start", .unit = "s", .min = -kLatest,
+      .max = kLatest, .typicalMin = 0, .typicalMax = 10,
+      .help = "When the first sample is due; before it, and after the last, the vertices rest."}),
     Collider<&O::twoSided>({.name = "two_sided", .label = "Two-sided",
       .help = "Of an open mesh: cloth stays on the side where it is; false: in front, from where the triangles run counter-clockwise."}),
     Collider<&O::friction>({.name = "friction", .label = "Friction", .min = 0, .max = 10,
@@ -509,6 +517,8 @@ std::vector<Parameter> MakeTable() {
       .help = "The axis runs through the collider's position; false as soon as `centre` is stated."}),
     Turn<&M::steady>({.name = "steady", .label = "Steady",
       .help = "At constant speed from start to end, not smoothly from rest to rest."}),
+    Turn<&M::jump>({.name = "jump", .label = "Jump",
+      .help = "All of it at once at `end`, with no way between: cloth that is there is pulled out; false: swept along."}),
 
     Wind<&WindSettings::velocity>({.name = "velocity", .label = "Velocity", .unit = "m/s", .min = -1e4, .max = 1e4,
       .typicalMin = -20, .typicalMax = 20, .help = "Of the air; a breeze is 5, a storm 25."}),
@@ -819,6 +829,10 @@ std::optional<Effect> EffectOf(const Scene& before, const Scene& after) {
   };
   compareMeshes(before.cloths, after.cloths, Shape::Mesh);
   compareMeshes(before.colliders, after.colliders, ColliderShape::Mesh);
+  for (std::size_t i = 0; i < std::min(before.colliders.size(), after.colliders.size()); ++i) {
+    const auto &a = before.colliders[i].loadedCache, &b = after.colliders[i].loadedCache;
+    if (a && b && a != b && *a != *b) greatest = Effect::Rebuild;
+  }
   for (const Difference& difference : Differences(before, after)) {
     greatest = std::max(greatest, std::optional(difference.parameter->effect));
   }

@@ -225,6 +225,7 @@ void World::Impl::FinishStep() {
   report.newtonIterations = counts.newtonIterations;
   report.intersections = counts.intersections;
   report.squeezed = counts.squeezed;
+  report.jumps = counts.jumps;
   report.lostMotion = counts.wantedWay > 0 ? counts.lostWay / counts.wantedWay : 0;
   report.splits = counts.splits;
   report.linearIterations = counts.linearIterations;

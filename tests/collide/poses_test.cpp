@@ -211,6 +211,25 @@ TEST_CASE("the solids of a scene, in their order and at their places") {
     CHECK(std::memcmp(&solids[k].pose, &moved[k].pose, sizeof(Pose)) == 0);
 }
 
+TEST_CASE("a jump is all there at its end, and not a bit before") {
+  Scene scene;
+  scene.colliders.resize(2);
+  ColliderMotion& motion = scene.colliderMotions.emplace_back();
+  motion.collider = 1;
+  motion.end = 2;
+  motion.displacement = {1, 2, 3};
+  motion.jump = true;
+  for (const double time : {0.0, 1.0, std::nextafter(2.0, 0.0)}) CHECK(PoseOf(scene, 1, time).position == Vec3{});
+  for (const double time : {2.0, 7.0}) CHECK(PoseOf(scene, 1, time).position == Vec3{1, 2, 3});
+  CHECK(Jumps(scene, 1, 1.9, 2));
+  CHECK(Jumps(scene, 1, 0, 9));
+  CHECK_FALSE(Jumps(scene, 1, 2, 2.1));
+  CHECK_FALSE(Jumps(scene, 1, 1.8, 1.9));
+  CHECK_FALSE(Jumps(scene, 0, 1.9, 2));
+  motion.jump = false;
+  CHECK_FALSE(Jumps(scene, 1, 1.9, 2));
+}
+
 TEST_CASE("a plane's frame is turned as little as can be, for normals all around") {
   SplitMix64 random(3);
   for (int k = 0; k < 200; ++k) {

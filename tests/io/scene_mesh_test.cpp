@@ -291,6 +291,29 @@ TEST_CASE("What is wrong with a collider is told at its place") {
         {"/collider_motion/axis: expected a direction"});
 }
 
+TEST_CASE("A motion that leaps is warned of unless it says that it jumps, and a mesh that is flat") {
+  const Folder folder;
+  const auto text = [&](const std::string& more) {
+    const Result<Scene> scene = ParseScene("{\"simulation\": {\"engine\": \"fabric\"}, \"cloth\": {},\n" + more + "}",
+                                           (folder.path / "a.json").string());
+    CHECK(scene.ok());
+    return Format(scene.diagnostics());
+  };
+  const std::string motion = "\"collider\": {\"radius\": 0.1}, \"collider_motion\": {\"start\": 1, ";
+  const std::string leap =
+      "warning: /collider_motion: goes up to 0.5 m in a step of 0.0166 s, farther than the collider is "
+      "large, 0.2 m; slow it down, raise simulation.steps_per_frame, or set `jump` to true";
+  CHECK(Contains(text(motion + "\"end\": 1.01, \"displacement\": [0, 0.5, 0]}"), leap));
+  CHECK(Contains(text(motion + "\"end\": 1.01, \"angle\": 90, \"centre\": [1, 0, 0]}"), "goes up to 1.57 m"));
+  CHECK(text(motion + "\"end\": 1.01, \"displacement\": [0, 0.5, 0], \"jump\": true}").empty());
+  CHECK(text(motion + "\"end\": 1, \"displacement\": [0, 0.5, 0], \"jump\": true}").empty());
+  CHECK(text(motion + "\"end\": 1.1, \"displacement\": [0, 0.5, 0]}").empty());
+  CHECK(text(motion + "\"end\": 1.01, \"angle\": 90}").empty());
+  folder.Write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\nf 1 3 4\nf 1 4 2\n");
+  CHECK(Contains(text("\"collider\": {\"shape\": \"mesh\", \"mesh\": \"flat.obj\"}"),
+                 "flat.obj: warning: the mesh is flat: it is closed and has no volume"));
+}
+
 TEST_CASE("A motion's centre is the collider's own unless one is stated") {
   const auto own = [](const std::string& keys) {
     const Result<Scene> scene = ParseScene(

@@ -199,6 +199,43 @@ TEST_CASE("colliders are drawn where they are at the time of the picture") {
   CHECK(sceneView.Update(room.scene, cloths, view, 64, 64, {}, 0).items.size() == 2);
 }
 
+TEST_CASE("a mesh that moves by a cache is drawn where its vertices are at the time of the picture") {
+  Room room;
+  const auto mesh = std::find_if(room.scene.colliders.begin(), room.scene.colliders.end(),
+                                 [](const ColliderSettings& c) { return c.shape == ColliderShape::Mesh; });
+  REQUIRE(mesh != room.scene.colliders.end());
+  const std::vector<Vec3>& rest = mesh->loaded->mesh.positions;
+  VertexCache cache{"a.pc2", 1, 2, 0, {}};
+  for (const double y : {0.0, 2.0}) {
+    for (const Vec3& p : rest) {
+      for (const double x : {p.x, p.y + y, p.z}) cache.positions.push_back(static_cast<float>(x));
+    }
+  }
+  mesh->cache = "a.pc2";
+  mesh->cacheRate = 1;
+  mesh->loadedCache = std::make_shared<const VertexCache>(cache);
+  const View view = View::ForScene(room.scene);
+  SceneView sceneView;
+  const ClothShape cloths[] = {room.cloth.Shape()};
+  const std::size_t at = static_cast<std::size_t>(mesh - room.scene.colliders.begin()) + 1;
+  double first = 0;
+  std::uint64_t version = 0;
+  std::shared_ptr<const DrawMesh> drawn;
+  for (const double time : {0.0, 0.25, 1.0}) {
+    const DrawItem& item = sceneView.Update(room.scene, cloths, view, 64, 64, {}, time).items[at];
+    REQUIRE(item.mesh->VertexCount() > 0);
+    const double y = At(item.mesh->positions, 0, 3).y;
+    if (time == 0) {
+      first = y, drawn = item.mesh;
+    } else {
+      CHECK(item.mesh->shapeVersion > version);
+    }
+    version = item.mesh->shapeVersion;
+    CHECK(y - first == doctest::Approx(2 * time));
+    CHECK(item.mesh == drawn);
+  }
+}
+
 TEST_CASE("all shapes in a picture, at rest and turned") {
   Room room;
   View view = View::ForScene(room.scene);

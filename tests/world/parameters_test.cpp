@@ -110,7 +110,8 @@ TEST_CASE("Only what keeps the grid and its start the same acts on a running clo
       "mesh",          "mesh_scale", "rest_shape", "metres_per_uv",    "weld",
       "weld_distance", "rotation",   "warp_angle", "bending_law"};
   for (const Parameter& p : Parameters()) {
-    const bool isOther = p.group == "collider" && (p.name == "shape" || p.name == "mesh" || p.name == "mesh_scale");
+    const bool isOther =
+        p.group == "collider" && (p.name == "shape" || p.name == "mesh" || p.name == "mesh_scale" || p.name == "cache");
     const bool expected = (p.group == "cloth" && rebuild.count(p.name) > 0) || isOther || p.name == "engine";
     CHECK_MESSAGE((p.effect == Effect::Rebuild) == expected, p.name);
     const bool isView = p.group == "camera" || p.group == "look" || (p.group == "collider" && p.name == "color");
