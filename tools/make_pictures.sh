@@ -27,7 +27,7 @@ worst() { # NAME FRAME [ARGUMENTS]
 }
 worst ball 34
 worst funnel 105
-worst garment 170
+worst garment 132
 worst knot 90
 worst layers50 30 --camera 30,14,1.6 --target .2,.25,.2
 worst needles 150 --camera 30,24,1.7 --target .5,.35,.5
