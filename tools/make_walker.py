@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""A body that walks on the spot: make_body.py [FOLDER]
+"""A body that walks on the spot: make_walker.py [FOLDER]
 
-Writes body.obj and walk.pc2 into scene/meshes/ or FOLDER: torso, legs and arms, closed tubes that reach into one another,
+Writes walker.obj and walk.pc2 into scene/meshes/ or FOLDER: torso, legs and arms, closed tubes that reach into one another,
 1.5 m high on the ground at y = 0, facing +z; and how it stands, begins to walk within a stride, and walks on.
 """
 
@@ -130,8 +130,8 @@ def main():
             lines.append("g " + name + {0: "", 1: "_left", -1: "_right"}[side] + "\n")
             lines += ["f %d %d %d\n" % tuple(v + first for v in t) for t in triangles]
     at = lambda time: [bob(move(p, side, time), time) for p, move, side in movers]
-    with open(os.path.join(folder, "body.obj"), "w") as file:
-        file.write("# by tools/make_body.py\n")
+    with open(os.path.join(folder, "walker.obj"), "w") as file:
+        file.write("# by tools/make_walker.py\n")
         file.writelines("v %.5f %.5f %.5f\n" % p for p in at(0))
         file.writelines(lines)
     samples = SECONDS * RATE + 1
