@@ -22,6 +22,9 @@ constexpr double kArrowSlack = 7;
 constexpr double kArrowLength = 70;
 /// Half the edge of the square that stands for a plane in the picture [m].
 constexpr double kDrawnPlane = 2;
+/// A collider goes at most so far in a frame of the simulation [m]: where frames take long the hand is far ahead, and
+/// what jumps after it would tear at the cloth and make frames longer still.
+constexpr double kColliderLead = 0.1;
 constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 Ray PointerRay(const Session& session, double x, double y, PictureSize size) {
@@ -250,6 +253,7 @@ void Hand::PressOnThings(const Ray& ray, const InputEvent&, Session& session) {
 
 void Hand::GripCollider(ColliderRef collider, int axis, const Ray& ray, const Vec3& at, Session& session) {
   grip_ = Grip::Collider;
+  goal_.reset();
   session.HoldChanges(true);
   selected_ = collider;
   axis_ = axis;
@@ -311,6 +315,22 @@ void Hand::MoveCollider(const Ray& ray, Session& session) {
     if (!at) return;
     place += *at - grabbed_;
   }
+  goal_ = place;
+  Follow(session);
+}
+
+void Hand::Follow(Session& session) {
+  const auto selected = Selected(session);
+  if (!selected || !goal_) return;
+  Vec3 place = *goal_;
+  if (session.playback().running()) {
+    const int frame = session.snapshot().report.frame;
+    if (frame == goalFrame_) return;
+    goalFrame_ = frame;
+    const Vec3 from = PlaceOf(*selected, session), way = place - from;
+    if (Length(way) > kColliderLead) place = from + way * (kColliderLead / Length(way));
+  }
+  if (place == *goal_) goal_.reset();
   const char* const name = selected->group == "sphere" ? "origin" : selected->group == "plane" ? "point" : "position";
   session.SetParameter(*FindParameter(selected->group, name), selected->index, SettingOf(*selected, session, place));
 }

@@ -30,6 +30,9 @@ class Hand {
   /// Takes what the user did. `inPicture`: the pointer is over the picture, not over a panel.
   void Take(const InputEvent& event, bool inPicture, PictureSize size, Session& session);
 
+  /// Leads a collider on to where it was dragged, as far as it may go in a frame of the simulation. Once per picture.
+  void Follow(Session& session);
+
   /// Something is being dragged that can be undone.
   bool dragging() const { return grip_ == Grip::Cloth || grip_ == Grip::Collider; }
   /// Which collider the gizmo is at, if it still exists.
@@ -60,6 +63,8 @@ class Hand {
   Vec3 facing_;   // The normal of the plane in which the pointer moves the thing.
   std::optional<ColliderRef> selected_;
   int axis_ = -1;
+  std::optional<Vec3> goal_;  // Where the collider is dragged [m], until it is there.
+  int goalFrame_ = -1;        // Of the simulation, in which it was last moved.
 };
 
 /// A gizmo as it stands in the picture: its centre and the ends of its arrows [screen unit].

@@ -239,6 +239,7 @@ class Viewer {
     state_.pointerRay =
         session_.view().camera.Ray(double(pointer.x) - 0.5, double(pointer.y) - 0.5, PictureWidth(), height_);
     state_.boxes.clear();
+    hand_.Follow(session_);
     session_.HoldChanges(hand_.dragging() || ImGui::IsMouseDown(ImGuiMouseButton_Left));
     DrawGizmo();
     state_.focusedControl.clear();
