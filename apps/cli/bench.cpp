@@ -7,6 +7,7 @@
 #include "apps/cli/pictures.h"
 #include "apps/cli/session.h"
 #include "apps/cli/verbs.h"
+#include "bench/contact_bench.h"
 #include "bench/fabric_bench.h"
 #include "bench/springs_bench.h"
 #include "core/text.h"
@@ -37,17 +38,27 @@ int BenchFabric(const Options& options) {
   return bench.Equal() ? kDone : kFailed;
 }
 
+int BenchContact(const Options& options) {
+  bench::ContactBenchOptions settings{.threads = options.threads, .frames = options.frames.value_or(0)};
+  if (!options.sizes.empty()) settings.sizes = options.sizes;
+  const bench::ContactBench bench = bench::MeasureContact(settings);
+  std::fputs((options.json ? bench::FormatJson(bench) : bench::FormatTable(bench)).c_str(), stdout);
+  if (!bench.equal) PrintError("positions differ between numbers of threads");
+  return bench.equal ? kDone : kFailed;
+}
+
 }  // namespace
 
 int Bench(const Options& options) {
-  constexpr std::string_view kBenchmarks[] = {"springs", "fabric"};
+  constexpr std::string_view kBenchmarks[] = {"springs", "fabric", "contact"};
   if (!options.benchmark.empty() &&
       std::find(std::begin(kBenchmarks), std::end(kBenchmarks), options.benchmark) == std::end(kBenchmarks)) {
     PrintError("there is no benchmark " + Quote(options.benchmark, 60) + DidYouMean(options.benchmark, kBenchmarks) +
-               "; there are: springs, fabric");
+               "; there are: springs, fabric, contact");
     return kUsage;
   }
   if (options.benchmark == "fabric") return BenchFabric(options);
+  if (options.benchmark == "contact") return BenchContact(options);
   bench::SpringsBenchOptions bench;
   if (auto root = FindRoot(options.root)) {
     bench.root = *root;

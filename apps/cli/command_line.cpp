@@ -538,8 +538,9 @@ void AddVerbs(CLI::App& app, Builder& builder) {
                          "  percale bench springs --json > speed.json\n"
                          "  percale bench fabric\n"
                          "  percale bench fabric --sizes 32 -o report\n"
+                         "  percale bench contact --sizes 100\n"
                          "fabric also writes fabric.html, one page with plots, and two of them as .svg.\n");
-  bench.add_option("NAME", builder.options().benchmark, "Which: springs (default), fabric");
+  bench.add_option("NAME", builder.options().benchmark, "Which: springs (default), fabric, contact");
   bench.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR");
   builder.Call(
       bench, "--threads", "Threads of the many-threaded runs; default: as many as there are cores", "N", "Options",

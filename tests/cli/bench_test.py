@@ -49,6 +49,16 @@ class Bench(ProgramTest):
         self.assertTrue(data)
         self.assertEqual(self.files(), [])
 
+    def test_what_contact_costs(self):
+        done = self.run_program("bench", "contact", "--sizes", "12", "--frames", "40", "--threads", "2", "--json")
+        data = json.loads(done.stdout)
+        self.assertTrue(data["equal"])
+        self.assertEqual({(run["scene"], run["threads"], run["phase"]) for run in data["runs"]},
+                         {(scene, threads, phase) for threads in (1, 2) for scene, phase in
+                          (("drape", "falls"), ("drape", "lands"), ("drape", "rests in folds"), ("no contact", "swings"))})
+        self.assertIn({"what": "intersections", "goal": "0", "measured": "0", "holds": True}, data["targets"])
+        self.assertEqual(self.files(), [])
+
     def test_an_unwritable_place_shows_before_the_work(self):
         (self.folder / "benchmarks").write_text("a file")
         done = self.run_program("bench", "fabric", "--sizes", "10", code=1)
