@@ -9,7 +9,7 @@ std::string ReportTableHeader() {
       "frame,time_s,kinetic_energy_J,potential_energy_J,elastic_energy_J,greatest_stretch,stretch_p99,"
       "greatest_move_m,self_contacts,collider_contacts,limited_springs,"
       "newton_iterations,linear_iterations,residual,converged,"
-      "intersections,squeezed,lost_motion";
+      "intersections,squeezed,lost_motion,splits";
   for (int stage = 0; stage < kStageCount; ++stage) line += "," + std::string(StageName(Stage(stage))) + "_s";
   return line + "\n";
 }
@@ -29,6 +29,7 @@ std::string ReportTableRow(const StepReport& report, std::optional<double> stret
   line += report.converged ? ",1" : ",0";
   line += "," + std::to_string(report.intersections) + "," + std::to_string(report.squeezed);
   add(report.lostMotion);
+  line += "," + std::to_string(report.splits);
   for (const double seconds : report.stageSeconds) add(seconds);
   return line + "\n";
 }

@@ -25,7 +25,7 @@ worst() { # NAME FRAME [ARGUMENTS]
   "$percale" shot "scene/gauntlet/$name.json" --frame "$frame" --shader-defaults --size 400x320 --samples 8 "$@" \
     -o "$out/gauntlet_$name.png"
 }
-worst ball 34
+worst ball 34 --camera 70,14,3.6 --target 0,.8,1
 worst funnel 105
 worst garment 132
 worst knot 90

@@ -90,6 +90,7 @@ RunEnd Run(World& world, const RunPlan& plan, const Options& options, const Sess
     sums.colliderContacts += report.colliderContacts;
     sums.limitedSprings += report.limitedSprings;
     sums.jumps += report.jumps;
+    sums.splits += report.splits;
     sums.mostIntersections = std::max(sums.mostIntersections, report.intersections);
     progress.Update(report);
     if (onFrame() != kDone) return RunEnd::Failed;

@@ -40,7 +40,7 @@ struct RunTotals {
   double wallSeconds = 0;  ///< Of the steps alone.
   double greatestStretch = 0;
   std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
-  std::int64_t jumps = 0, mostIntersections = 0;
+  std::int64_t jumps = 0, mostIntersections = 0, splits = 0;
 };
 
 /// Gives frame 0 and then each frame to `onFrame`, which returns an exit code, kDone to go on.

@@ -174,6 +174,8 @@ void PrintSummary(std::FILE* out, const World& world, const RunTotals& totals, R
   std::fprintf(out, "at rest           %s\n", report.atRest ? "yes" : "no");
   std::fprintf(out, "contacts          %lld in the cloth, %lld with colliders\n",
                static_cast<long long>(totals.selfContacts), static_cast<long long>(totals.colliderContacts));
+  if (totals.splits > 0)
+    std::fprintf(out, "splits            %lld steps done over in parts\n", static_cast<long long>(totals.splits));
   if (totals.jumps > 0)
     std::fprintf(out, "jumps             %lld of colliders\n", static_cast<long long>(totals.jumps));
   if (totals.mostIntersections > 0) {
