@@ -135,6 +135,10 @@ void ContactStep::Restart(const Scene& scene, double time) {
 int ContactStep::MoveColliders(const Scene& scene, double time) {
   const auto jumps = [&](int collider) { return collider >= 0 && Jumps(scene, collider, time_, time); };
   int jumped = 0;
+  rewound_.solids = solids_;
+  rewound_.obstacleBefore = obstacleBefore_;
+  rewound_.obstacle = obstacle_;
+  rewound_.time = time_;
   ListSolids(scene, time, placed_);
   const bool same = solids_.size() == placed_.size();
   solids_.resize(placed_.size());
@@ -252,9 +256,13 @@ SafeMoveReport ContactStep::Move(std::span<const Vec3> now, std::span<Vec3> end,
 }
 
 void ContactStep::Rewind() {
-  for (SolidStep& solid : solids_) solid.end = solid.start;
-  if (moves_ > 0) obstacle_ = obstacleBefore_;
+  solids_ = rewound_.solids;
+  obstacleBefore_ = rewound_.obstacleBefore;
+  obstacle_ = rewound_.obstacle;
+  time_ = rewound_.time;
   moves_ = 0;
+  // What was seen may have been seen after a jump.
+  judged_ = judged_ && met_.empty();
   listed_ = false;
 }
 

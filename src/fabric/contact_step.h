@@ -95,7 +95,13 @@ class ContactStep {
   std::vector<Tangle> tangles_;
   bool judged_ = false;                 // Whether that is known.
   std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid
-  double time_ = 0;                     // where colliders are led to [s]
+  // Where Rewind leads back to.
+  struct {
+    std::vector<SolidStep> solids;
+    std::vector<Vec3> obstacleBefore, obstacle;
+    double time = 0;
+  } rewound_;
+  double time_ = 0;  // where colliders are led to [s]
   double distance_ = 0;
   bool listed_ = false;  // What is near is known.
   int moves_ = 0;        // Of this step.
