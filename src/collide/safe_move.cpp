@@ -16,8 +16,6 @@ constexpr int kMostSearches = 10, kFewSearches = 4;
 constexpr double kLongest = 60;
 /// Cloth is in contact with itself below this share of the distance that the pair has in the flat mesh.
 constexpr double kOwnShare = 0.35;
-/// What lies within so many edges of each other in the flat mesh are neighbours.
-constexpr double kNeighbours = 3;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -37,38 +35,8 @@ double FloorOf(double gap, double distance) {
   return std::min(0.999 * gap, std::max(std::min(0.2 * gap, 0.25 * distance), 0.05 * distance));
 }
 
-void ExemptPairs::Take(std::span<const Intersection> met) {
-  empty_ = met.empty();
-  if (empty_) return;
-  rings_.assign(Index(mesh_.vertices()), 0);
-  for (const Intersection& at : met) {
-    const Triangle& t = mesh_.triangles[Index(at.triangle)];
-    for (const std::int32_t v : {at.edge[0], at.edge[1], t.a, t.b, t.c}) rings_[Index(v)] = 1;
-  }
-  for (std::uint8_t ring = 1; ring <= kRings; ++ring) {
-    for (const Edge& edge : mesh_.edges) {
-      std::uint8_t &a = rings_[Index(edge.a)], &b = rings_[Index(edge.b)];
-      if (a == ring && b == 0) b = static_cast<std::uint8_t>(ring + 1);
-      if (b == ring && a == 0) a = static_cast<std::uint8_t>(ring + 1);
-    }
-  }
-}
-
-bool ExemptPairs::Has(PairKind kind, const VertexQuad& quad) const {
-  if (empty_) return false;
-  const std::size_t own = kind == PairKind::VertexTriangle ? 1 : 2;  // vertices of the first thing
-  bool first = false, second = false;
-  for (std::size_t k = 0; k < 4; ++k) (k < own ? first : second) |= rings_[Index(quad[k])] != 0;
-  if (!first || !second) return false;
-  if (mesh_.body[Index(quad[0])] != mesh_.body[Index(quad[3])]) return true;
-  const auto length = [&](std::size_t a, std::size_t b) {
-    return Length(mesh_.place[Index(quad[a])] - mesh_.place[Index(quad[b])]);
-  };
-  return length(0, 3) > kNeighbours * std::max(length(2, 3), kind == PairKind::EdgeEdge ? length(0, 1) : length(1, 3));
-}
-
 SafeMove::SafeMove(const ContactMesh& mesh, const Executor& executor)
-    : mesh_(mesh), executor_(executor), finder_(mesh, executor), exempt_(mesh) {
+    : mesh_(mesh), executor_(executor), finder_(mesh, executor) {
   for (std::vector<std::uint8_t>* flags : {&cut_, &changed_, &next_}) flags->resize(Index(mesh.vertices()));
   least_.resize(Index(mesh.vertices()));
 }
@@ -119,7 +87,7 @@ void SafeMove::Search(const Ways& ways, const ContactDistances& distances) {
              std::span(pairs.start).subspan(begin, end - begin));
     for (std::size_t p = begin; p < end; ++p) {
       pairs.distance[p] = DistanceOf(kKinds[kind], pairs.vertex[p], distances);
-      pairs.exempt[p] = exempt_.Has(kKinds[kind], pairs.vertex[p]) ? 1 : 0;
+      pairs.exempt[p] = untangler_ && untangler_->LetsPass(kKinds[kind], pairs.vertex[p]) ? 1 : 0;
     }
   });
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "collide/contact_mesh.h"
-#include "collide/intersections.h"
 #include "collide/pair_finder.h"
 #include "collide/proximity.h"
+#include "collide/untangle.h"
 #include "core/executor.h"
 
 namespace percale {
@@ -31,24 +31,6 @@ struct NearPairs {
   std::size_t size() const { return vertex.size(); }
 };
 
-/// Pairs that nothing keeps apart, as they are near where the mesh is tangled.
-class ExemptPairs {
- public:
-  /// The mesh must outlive it.
-  explicit ExemptPairs(const ContactMesh& mesh) : mesh_(mesh) {}
-
-  /// Those around edges and triangles that meet: of things within kRings triangles of them that are no neighbours.
-  void Take(std::span<const Intersection> met);
-  bool Has(PairKind kind, const VertexQuad& quad) const;
-
-  static constexpr int kRings = 2;
-
- private:
-  const ContactMesh& mesh_;
-  bool empty_ = true;
-  std::vector<std::uint8_t> rings_;  // per vertex: 1 where it meets, 2 next to that ..., 0 elsewhere
-};
-
 struct SafeMoveReport {
   int detections = 0;    ///< Searches for pairs.
   std::int64_t cut = 0;  ///< Vertices that did not go all their way.
@@ -63,8 +45,8 @@ class SafeMove {
   /// Both must outlive it.
   SafeMove(const ContactMesh& mesh, const Executor& executor);
 
-  /// What is near these may pass through each other.
-  void Exempt(std::span<const Intersection> met) { exempt_.Take(met); }
+  /// What it lets pass through each other from now on is not kept apart. None: all is. It must outlive its use.
+  void Exempt(const Untangler* untangler) { untangler_ = untangler; }
 
   /// Shortens ways from `start` so that no pair meets: writes the share of its way that each vertex goes. A vertex
   /// without a way stays. `mayGiveUp`: where one cut leads to the next for long, the report may say so instead.
@@ -100,7 +82,7 @@ class SafeMove {
   const ContactMesh& mesh_;
   const Executor& executor_;
   PairFinder finder_;
-  ExemptPairs exempt_;
+  const Untangler* untangler_ = nullptr;
   NearPairs pairs_[2];                              // by kind
   std::vector<double> shares_[2];                   // per pair, of the last test
   std::vector<Vec3> gone_;                          // per vertex: the way that it may go

@@ -127,7 +127,7 @@ void ContactStep::Restart(const Scene& scene, double time) {
   for (const PlacedSolid& solid : placed_) solids_.push_back({solid, solid});
   obstacles_.PlaceAt(scene, time, obstacle_);
   obstacleBefore_ = obstacleTarget_ = obstacle_;
-  met_.clear();
+  untangler_.Take({});
   judged_ = listed_ = false;
   time_ = time;
 }
@@ -202,7 +202,7 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
                    .surfaces = surfaces_});
   contacts_.AddPairs(PairKind::VertexTriangle, safeMove_.vertexTriangle());
   contacts_.AddPairs(PairKind::EdgeEdge, safeMove_.edgeEdge());
-  untangler_.Find(met_, start_, tangles_);
+  untangler_.Find(start_, free, tangles_);
   contacts_.AddTangles(tangles_, distances_);
   for (std::size_t s = 0; s < solids_.size(); ++s) {
     const ContactSurface surface{.friction = solids_[s].end.friction, .rulesFriction = true};
@@ -262,13 +262,13 @@ void ContactStep::Rewind() {
   time_ = rewound_.time;
   moves_ = 0;
   // What was seen may have been seen after a jump.
-  judged_ = judged_ && met_.empty();
+  judged_ = judged_ && tangled() == 0;
   listed_ = false;
 }
 
 void ContactStep::End(std::span<const Vec3> y) {
   contacts_.End(y);
-  if (!met_.empty()) Judge(y);
+  if (tangled() > 0) Judge(y);
 }
 
 void ContactStep::MoveAside(std::span<const Vec3> now, std::span<Vec3> end) {
@@ -276,7 +276,7 @@ void ContactStep::MoveAside(std::span<const Vec3> now, std::span<Vec3> end) {
   obstacleTarget_ = obstacle_;
   for (SolidStep& solid : solids_) solid.start = solid.end;
   Move(now, end);
-  if (!met_.empty()) Judge(end);
+  if (tangled() > 0) Judge(end);
   listed_ = false;
 }
 
@@ -284,21 +284,22 @@ void ContactStep::MoveAside(std::span<const Vec3> now, std::span<Vec3> end) {
 void ContactStep::Judge(std::span<const Vec3> cloth) {
   std::copy(cloth.begin(), cloth.end(), start_.begin());
   std::copy(obstacle_.begin(), obstacle_.end(), start_.begin() + static_cast<std::ptrdiff_t>(cloth.size()));
-  met_.clear();
-  if (distances_.clothPairs || !obstacle_.empty()) met_ = judge_.Count(start_, executor_, kMostTangled).first;
-  JudgeLoneEdges();
+  std::vector<Intersection> met;
+  if (distances_.clothPairs || !obstacle_.empty()) met = judge_.Count(start_, executor_, kMostTangled).first;
+  JudgeLoneEdges(met);
   if (!distances_.clothPairs) {
-    std::erase_if(met_, [&](const Intersection& met) {
-      return std::max(met.edge[1], mesh_.triangles[Index(met.triangle)].a) < mesh_.clothVertices;
+    std::erase_if(met, [&](const Intersection& one) {
+      return std::max(one.edge[1], mesh_.triangles[Index(one.triangle)].a) < mesh_.clothVertices;
     });
   }
-  safeMove_.Exempt(met_);
+  untangler_.Take(std::move(met));
+  safeMove_.Exempt(&untangler_);
   judged_ = true;
   listed_ = false;  // A list says which pairs are let be.
 }
 
 /// The edges of solids, of which the judge knows nothing, each against all triangles of cloth: they are few.
-void ContactStep::JudgeLoneEdges() {
+void ContactStep::JudgeLoneEdges(std::vector<Intersection>& met) {
   const auto apart = [](double a, double b, double p, double q, double r) {
     return std::max(a, b) < std::min({p, q, r}) || std::min(a, b) > std::max({p, q, r});
   };
@@ -310,7 +311,7 @@ void ContactStep::JudgeLoneEdges() {
       const Triangle& triangle = model_.triangles[t];
       const Vec3 &p = start_[Index(triangle.a)], &q = start_[Index(triangle.b)], &r = start_[Index(triangle.c)];
       if (apart(a.x, b.x, p.x, q.x, r.x) || apart(a.y, b.y, p.y, q.y, r.y) || apart(a.z, b.z, p.z, q.z, r.z)) continue;
-      if (SegmentMeetsTriangle(a, b, p, q, r)) met_.push_back({{from, to}, static_cast<std::int32_t>(t)});
+      if (SegmentMeetsTriangle(a, b, p, q, r)) met.push_back({{from, to}, static_cast<std::int32_t>(t)});
     }
   }
 }

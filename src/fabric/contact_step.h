@@ -53,7 +53,7 @@ class ContactStep {
   void MoveAside(std::span<const Vec3> now, std::span<Vec3> end);
   /// Pairs of an edge and a triangle that pass through each other, as was last looked: at a start, after a jump, and at
   /// the end of each step that began with some; of cloth that is apart none can become any.
-  std::int64_t tangled() const { return static_cast<std::int64_t>(met_.size()); }
+  std::int64_t tangled() const { return static_cast<std::int64_t>(untangler_.met().size()); }
 
   /// How many vertices of cloth are inside of solids, and how many of obstacles wait for cloth to make way: what is
   /// squeezed gives way to colliders, and they to it, but never cloth to cloth.
@@ -72,7 +72,7 @@ class ContactStep {
 
  private:
   void Judge(std::span<const Vec3> cloth);
-  void JudgeLoneEdges();
+  void JudgeLoneEdges(std::vector<Intersection>& met);
 
   const FabricModel& model_;
   const Executor& executor_;
@@ -91,7 +91,6 @@ class ContactStep {
   std::vector<double> share_;
   IntersectionJudge judge_;
   Untangler untangler_;
-  std::vector<Intersection> met_;  // what is tangled
   std::vector<Tangle> tangles_;
   bool judged_ = false;                 // Whether that is known.
   std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid

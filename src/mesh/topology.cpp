@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/disjoint_sets.h"
+
 namespace percale {
 namespace {
 
@@ -28,25 +30,16 @@ void BeginsFromCounts(std::vector<std::int32_t>& counts) {
   }
 }
 
-/// The least of a set of vertices that hang together (union by least, path halving).
-std::int32_t Root(std::vector<std::int32_t>& parent, std::int32_t v) {
-  while (parent[Z(v)] != v) v = parent[Z(v)] = parent[Z(parent[Z(v)])];
-  return v;
-}
-
 void FindComponents(Topology& topology, std::size_t vertexCount, std::span<const Triangle> triangles) {
-  std::vector<std::int32_t> parent(vertexCount);
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets pieces(vertexCount);
   for (const Triangle& t : triangles) {
-    for (const std::int32_t other : {t.b, t.c}) {
-      const std::int32_t a = Root(parent, t.a), b = Root(parent, other);
-      parent[Z(std::max(a, b))] = std::min(a, b);
-    }
+    pieces.Join(t.a, t.b);
+    pieces.Join(t.a, t.c);
   }
   topology.component.assign(vertexCount, -1);
   for (std::size_t v = 0; v < vertexCount; ++v) {
     if (topology.cornerBegin[v] == topology.cornerBegin[v + 1]) continue;
-    const std::int32_t root = Root(parent, static_cast<std::int32_t>(v));
+    const std::int32_t root = pieces.Find(static_cast<std::int32_t>(v));
     topology.component[v] = Z(root) == v ? topology.componentCount++ : topology.component[Z(root)];
   }
 }

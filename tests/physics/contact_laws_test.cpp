@@ -148,18 +148,6 @@ Scene ShotScene(bool shot) {
   return scene;
 }
 
-/// A small sheet through the middle of one that is held at its corners.
-Scene CrossingScene() {
-  Scene scene = FabricScene(60);
-  scene.cloths.assign(2, Sheet(0.3, 0.3, 15, 15));
-  scene.cloths[0].pinned = {{0, 0}, {15, 0}, {0, 15}, {15, 15}};
-  scene.cloths[1] = Sheet(0.2, 0.2, 10, 10);
-  scene.cloths[1].orientation = Orientation::Vertical;
-  scene.cloths[1].origin = {0.053, 0.912, 0.147};
-  scene.planes.push_back({.point = {0, 0.5, 0}, .normal = {0, 1, 0}, .friction = 0.3});
-  return scene;
-}
-
 }  // namespace
 
 TEST_CASE("cloth that meets cloth keeps the momentum of both, and hardly turns them") {
@@ -306,22 +294,4 @@ TEST_CASE("a step in parts comes out to the same bits for any number of threads,
   world.Restore(middle);
   for (int k = 5; k < 9; ++k) world.Step();
   CHECK(world.StateHash() == hashes[0]);
-}
-
-TEST_CASE("sheets that start crossed are apart within a second, and stay so") {
-  World world(CrossingScene(), {.threads = 1});
-  ClothJudge judge(world, 1);
-  const std::int64_t first = judge.Count(world).count;
-  CHECK(first > 20);
-  for (int k = 0; k < 60; ++k) {
-    const StepReport& report = world.Step();
-    REQUIRE(!report.divergence);
-    CHECK(report.intersections == judge.Count(world).count);
-    CHECK(report.intersections < 1.5 * double(first));
-    CHECK(report.greatestStretch < 1.5);
-  }
-  for (int k = 0; k < 30; ++k) {
-    CHECK(world.Step().intersections == 0);
-    CHECK(judge.Count(world).count == 0);
-  }
 }

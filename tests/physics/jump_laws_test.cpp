@@ -63,7 +63,7 @@ TEST_CASE("a collider that jumps into cloth is there at once, and flagged; what 
   }();
   World world(Curtain(box ? Box() : Tube()), {.threads = 1});
   std::int64_t jumps = 0, most = 0, last = 0;
-  for (int frame = 1; frame <= 40; ++frame) {
+  for (int frame = 1; frame <= 100; ++frame) {
     CAPTURE(frame);
     const StepReport& report = world.Step();
     REQUIRE(!report.divergence);
@@ -76,7 +76,7 @@ TEST_CASE("a collider that jumps into cloth is there at once, and flagged; what 
   }
   CHECK(jumps == 1);
   CHECK(most >= 4);
-  CHECK(last <= most);
+  CHECK(last == 0);
 }
 
 TEST_CASE("a collider that is not said to jump sweeps cloth along, however fast it goes") {
