@@ -242,8 +242,24 @@ void FabricEngine::Solve() {
   contact_->FindPlanes(begin_, position_, ahead, free_, h_);
   Objective& objective = solver_.objective();
   objective.Begin({.h = h_, .start = begin_, .predicted = predicted_, .loads = loads_, .free = free_});
-  const double here = objective.Energy(next_);
-  if (objective.Energy(ahead) < here) std::swap(ahead, next_);
+  double least = objective.Energy(next_);
+  if (objective.Energy(ahead) < least) {
+    std::swap(ahead, next_);
+  } else if (model_.Cloths() > 1) {
+    // Each cloth for itself, so that none that flies freely is held by what happens to another.
+    for (int c = 0; c < model_.Cloths(); ++c) {
+      const auto exchange = [&] {
+        const int* const first = &model_.firstVertex[Index(c)];
+        std::swap_ranges(next_.begin() + first[0], next_.begin() + first[1], ahead.begin() + first[0]);
+      };
+      exchange();
+      const double energy = objective.Energy(next_);
+      if (energy < least)
+        least = energy;
+      else
+        exchange();
+    }
+  }
   Minimise(scene_.simulation.newtonIterations);
   previous_ = begin_;
 }
