@@ -149,11 +149,16 @@ class Checker {
       return false;
     }
     if (cloth.shape == Shape::Mesh) return CheckMesh(c);
+    if (!cloth.mesh.empty()) Warn(Path(c, "mesh"), NotRead(cloth.mesh));
     if (!cloth.pinnedGroup.empty()) {
       Error(Path(c, "pinned_group"), "expected none, for only a mesh has groups; list the points in `pinned`, got " +
                                          Quote(cloth.pinnedGroup, 40));
     }
     return true;
+  }
+
+  static std::string NotRead(const std::string& mesh) {
+    return Quote(mesh, 80) + " is not read, for `shape` says otherwise; set it to \"mesh\"";
   }
 
   bool CheckMesh(std::size_t c) {
@@ -353,7 +358,10 @@ class Checker {
       return;
     }
     CheckCache(c);
-    if (collider.shape != ColliderShape::Mesh) return;
+    if (collider.shape != ColliderShape::Mesh) {
+      if (!collider.mesh.empty()) Warn(path + "/mesh", NotRead(collider.mesh));
+      return;
+    }
     if (collider.mesh.empty()) {
       Error(path + "/mesh", "expected the file of a mesh, .obj or .ply, got none");
     } else if (LacksMesh(collider)) {

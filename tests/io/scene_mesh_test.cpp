@@ -224,6 +224,20 @@ TEST_CASE("A collider brings its mesh along, closed at its seams and turned outw
   CHECK(load("\"mesh\": \"meshes/open.obj\", \"two_sided\": true").diagnostics().empty());
 }
 
+TEST_CASE("A mesh that is named, but whose shape is another, is warned of") {
+  for (const std::string object : {"cloth", "collider"}) {
+    const auto text = [&](const std::string& shape) {
+      return Format(ParseScene("{\"simulation\": {\"engine\": \"fabric\"}, \"" + object + "\": [{" + shape +
+                                   "\"mesh\": \"no.obj\"}]}",
+                               "a.json")
+                        .diagnostics());
+    };
+    INFO(text(""));
+    CHECK(Contains(text(""), "warning: /" + object + "/0/mesh: \"no.obj\" is not read, for `shape` says otherwise"));
+    CHECK(!Contains(text("\"shape\": \"mesh\", "), "is not read, for"));
+  }
+}
+
 TEST_CASE("Of pieces of a collider each is turned outwards, but for the wall of a hollow") {
   const Folder folder;
   const auto piece = [](bool insideOut, double scale, const Vec3& at) {
