@@ -82,13 +82,10 @@ ContactStep::ContactStep(const Scene& scene, const FabricModel& model, const Exe
       obstacles_(scene),
       mesh_(MakeContactMesh(model, obstacles_)),
       safeMove_(mesh_, executor),
-      contacts_(mesh_, executor),
-      judge_(mesh_.vertices(), mesh_.triangles, mesh_.clothVertices),
-      untangler_(mesh_) {
+      contacts_(mesh_, executor) {
   const std::size_t count = Index(mesh_.vertices());
-  for (std::vector<Vec3>* vectors : {&begin_, &start_, &way_}) vectors->resize(count);
+  for (std::vector<Vec3>* vectors : {&start_, &way_}) vectors->resize(count);
   share_.resize(count);
-  meetings_.resize(Index(mesh_.clothVertices));
   for (std::vector<Vec3>* vectors : {&obstacleBefore_, &obstacle_, &obstacleTarget_})
     vectors->resize(Index(obstacles_.vertices()));
   Configure(scene);
@@ -184,15 +181,14 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
                              std::span<const std::uint8_t> free, double h, bool firm) {
   const std::size_t cloth = now.size();
   for (std::size_t v = 0; v < cloth; ++v) {
-    begin_[v] = begin[v];
     start_[v] = now[v];
     way_[v] = ahead[v] - now[v];
   }
   for (std::size_t v = 0; v < obstacle_.size(); ++v) {
-    begin_[cloth + v] = start_[cloth + v] = obstacle_[v];
+    start_[cloth + v] = obstacle_[v];
     way_[cloth + v] = obstacleTarget_[v] - obstacle_[v];
   }
-  contacts_.Begin({.begin = begin_,
+  contacts_.Begin({.begin = begin,
                    .start = start_,
                    .way = way_,
                    .free = free,
@@ -202,11 +198,13 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
                    .surfaces = surfaces_});
   contacts_.AddPairs(PairKind::VertexTriangle, safeMove_.vertexTriangle());
   contacts_.AddPairs(PairKind::EdgeEdge, safeMove_.edgeEdge());
-  untangler_.Find(met_, start_, tangles_);
+  tangles_.clear();
+  if (untangler_) untangler_->Find(met_, start_, tangles_);
   contacts_.AddTangles(tangles_, distances_);
   for (std::size_t s = 0; s < solids_.size(); ++s) {
     const ContactSurface surface{.friction = solids_[s].end.friction, .rulesFriction = true};
     const auto distanceOf = [&](std::size_t v) { return 2 * distances_.half[Index(mesh_.body[v])]; };
+    meetings_.resize(cloth);  // before the first solid there are none
     ForRange(executor_, cloth, [&](int vertex) {
       const std::size_t v = Index(vertex);
       meetings_[v].any = false;
@@ -285,7 +283,10 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
   std::copy(cloth.begin(), cloth.end(), start_.begin());
   std::copy(obstacle_.begin(), obstacle_.end(), start_.begin() + static_cast<std::ptrdiff_t>(cloth.size()));
   met_.clear();
-  if (distances_.clothPairs || !obstacle_.empty()) met_ = judge_.Count(start_, executor_, kMostTangled).first;
+  if (distances_.clothPairs || !obstacle_.empty()) {
+    if (!judge_) judge_.emplace(mesh_.vertices(), mesh_.triangles, mesh_.clothVertices);
+    met_ = judge_->Count(start_, executor_, kMostTangled).first;
+  }
   JudgeLoneEdges();
   if (!distances_.clothPairs) {
     std::erase_if(met_, [&](const Intersection& met) {
@@ -293,6 +294,12 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
     });
   }
   safeMove_.Exempt(met_);
+  if (met_.empty()) {
+    judge_.reset();
+    untangler_.reset();
+  } else if (!untangler_) {
+    untangler_.emplace(mesh_);
+  }
   judged_ = true;
   listed_ = false;  // A list says which pairs are let be.
 }

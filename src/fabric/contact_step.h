@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -87,14 +88,15 @@ class ContactStep {
   // Vertices of obstacles: a step ago, now, and where they are led.
   std::vector<Vec3> obstacleBefore_, obstacle_, obstacleTarget_;
   // Of the mesh, cloth and obstacles:
-  std::vector<Vec3> begin_, start_, way_;
+  std::vector<Vec3> start_, way_;
   std::vector<double> share_;
-  IntersectionJudge judge_;
-  Untangler untangler_;
+  // While something is tangled, or that is not known:
+  std::optional<IntersectionJudge> judge_;
+  std::optional<Untangler> untangler_;
   std::vector<Intersection> met_;  // what is tangled
   std::vector<Tangle> tangles_;
   bool judged_ = false;                 // Whether that is known.
-  std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid
+  std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid; none without solids
   // Where Rewind leads back to.
   struct {
     std::vector<SolidStep> solids;

@@ -210,7 +210,7 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs) {
         c.weight[k] = plane.weight[k];
         c.vertex[k] = v < mesh_.clothVertices ? v : -1;
         if (c.vertex[k] < 0) obstacle += (x[k] + way[k]) * plane.weight[k];
-        c.slideFrom += From<double>(step_.begin[Index(v)]) * plane.weight[k];
+        c.slideFrom += From<double>((c.vertex[k] < 0 ? step_.start : step_.begin)[Index(v)]) * plane.weight[k];
       }
       c.offset = Dot(c.normal, obstacle);
       c.slideFrom -= obstacle;
