@@ -30,8 +30,8 @@ std::size_t Index(std::int64_t i) {
 NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
     : model_(model),
       executor_(executor),
-      pattern_(MakePattern(model.vertexCount, model.triangles)),
-      objective_(model, pattern_, executor) {
+      matrix_(MakePattern(model.vertexCount, model.triangles)),
+      objective_(model, matrix_.pattern(), executor) {
   gradient_.resize(Index(model.vertexCount));
   trial_.resize(Index(model.vertexCount));
   right_.assign(VectorLength(model.vertexCount), 0);
@@ -44,7 +44,7 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
   for (std::size_t v = 0; v < free.size(); ++v) pinned[v] = free[v] ? 0 : 1;
   objective_.TakeMaterials();
   const ScalarMatrix& plates = model_.plates;
-  matrix_.SetUp(pattern_, plates, pinned);
+  matrix_.SetUp(plates, pinned);
   plateDiagonal_.resize(Index(model_.vertexCount));
   for (int row = 0; row < model_.vertexCount; ++row) {
     const auto begin = plates.column.begin() + plates.first[Index(row)];
@@ -53,7 +53,7 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
   }
   SetStep(h);
   const MaterialMesh material{model_.triangles, model_.chartTriangles, model_.chart};
-  multigrid_.SetUp(matrix_, MakeHierarchy(pattern_, material, pinned));
+  multigrid_.SetUp(matrix_, MakeHierarchy(matrix_.pattern(), material, pinned));
   conjugateGradient_.SetUp(model_.vertexCount);
 }
 

@@ -50,9 +50,8 @@ class NewtonSolver {
 
   const FabricModel& model_;
   const Executor& executor_;
-  BlockPattern pattern_;
-  Objective objective_;
   SystemMatrix matrix_;
+  Objective objective_;
   Multigrid multigrid_;
   ConjugateGradient conjugateGradient_;
   std::vector<double> plateDiagonal_;  // per vertex [N/m]

@@ -80,10 +80,14 @@ struct ExtraRows {
 class SystemMatrix {
  public:
   explicit SystemMatrix(const Kernels& kernels = BestKernels()) : kernels_(&kernels) {}
+  /// Has that pattern, and is to be set up.
+  explicit SystemMatrix(BlockPattern pattern) : kernels_(&BestKernels()), pattern_(std::move(pattern)) {}
 
   /// `constant`: S, as large as `pattern`. `pinned`: per row, 1 where a vertex does not move; or nothing.
   /// Afterwards nothing allocates but SetExtra.
   void SetUp(BlockPattern pattern, const ScalarMatrix& constant, std::span<const std::uint8_t> pinned = {});
+  /// The same with the pattern that it has.
+  void SetUp(const ScalarMatrix& constant, std::span<const std::uint8_t> pinned);
 
   int rows() const { return pattern_.rows(); }
   const BlockPattern& pattern() const { return pattern_; }
