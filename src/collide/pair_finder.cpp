@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,28 @@ std::size_t Index(std::int64_t i) {
 int Blocks(std::int64_t count) {
   return static_cast<int>((count + kLanes - 1) / kLanes);
 }
+
+/// Shapes of the triangles of leaves, made when they are asked for. Those of a few leaves stay: pairs are searched for
+/// along the mesh, so that what is asked for again is asked for soon.
+class TriangleShapesOf {
+ public:
+  TriangleShapesOf(const Kernels& kernels, const LeafShapeArgs& args) : kernels_(kernels), args_(args) {
+    leaf_.fill(-1);
+  }
+  const TriangleShapes& operator()(std::int32_t leaf) {
+    const std::size_t place = Index(leaf) % kPlaces;
+    if (std::exchange(leaf_[place], leaf) != leaf) kernels_.triangleShapes(args_, leaf, shapes_[place]);
+    return shapes_[place];
+  }
+
+ private:
+  static constexpr std::size_t kPlaces = 64;  // 50 kB, that stay in cache
+
+  const Kernels& kernels_;
+  const LeafShapeArgs& args_;
+  std::array<std::int32_t, kPlaces> leaf_;  // -1: none
+  std::array<TriangleShapes, kPlaces> shapes_;
+};
 
 using Write = int (*)(const WriteArgs&);
 
@@ -118,8 +141,9 @@ struct PairFinder::Impl {
 
   void BoxVertices(const MeshMotion& motion, std::span<const double> reach);
   void BoxLeaves();
+  LeafShapeArgs ShapeArgs(int begin, int end, bool haveCuts);
   void ShapeLeaves(std::span<const double> reach, bool haveCuts);
-  void SearchLeaves(std::span<const double> reach, bool clothPairs);
+  void SearchLeaves(std::span<const double> reach, bool clothPairs, bool haveCuts);
   void BoxItems();
   void CompareItems();
 
@@ -148,11 +172,10 @@ struct PairFinder::Impl {
   AlignedVector<BoxRow> rows;                   // per vertex
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
-  std::vector<LeafShape> shapes;                 // per leaf
-  AlignedVector<TriangleShapes> triangleShapes;  // per leaf
-  std::vector<std::uint8_t> areAllApart;         // per leaf, as FlatRegions has it
-  AlignedVector<BoxBlock> itemBoxes;             // of leaves that are touched: they take more memory than all else
-  std::vector<std::uint8_t> isTouched;           // per leaf: may have pairs
+  std::vector<LeafShape> shapes;          // per leaf
+  std::vector<std::uint8_t> areAllApart;  // per leaf, as FlatRegions has it
+  AlignedVector<BoxBlock> itemBoxes;      // of leaves that are touched: they take more memory than all else
+  std::vector<std::uint8_t> isTouched;    // per leaf: may have pairs
   ChunkLists<LeafPair> leafPairs;
   ChunkLists<VertexQuad> vertexTriangleLists, edgeEdgeLists;
   Pairs vertexTriangle, edgeEdge;
@@ -170,7 +193,6 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       firstItemBlock(Index(clusters.leaves())),
       rows(m.body.size()),
       shapes(Index(clusters.clothLeaves)),
-      triangleShapes(Index(clusters.clothLeaves)),
       areAllApart(Index(clusters.clothLeaves)),
       isTouched(Index(clusters.leaves())),
       leafPairs(chunks),
@@ -222,21 +244,24 @@ void PairFinder::Impl::BoxLeaves() {
   }
 }
 
+LeafShapeArgs PairFinder::Impl::ShapeArgs(int begin, int end, bool haveCuts) {
+  return {.begin = begin,
+          .end = end,
+          .triangleFirst = clusters.triangleFirst.data(),
+          .corners = Corners(std::span<const Triangle>(clusters.triangles)),
+          .vertexFirst = clusters.vertexFirst.data(),
+          .vertices = clusters.vertices.data(),
+          .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
+          .greatestSlope = regions.greatestSlope.data(),
+          .rows = rows.data(),
+          .boxes = levels[0].data(),
+          .haveCuts = haveCuts,
+          .shapes = shapes.data()};
+}
+
 void PairFinder::Impl::ShapeLeaves(std::span<const double> reach, bool haveCuts) {
   ForBlocks([&](int begin, int end, int) {
-    kernels.leafShapes({.begin = begin * kLanes,
-                        .end = std::min(end * kLanes, clusters.clothLeaves),
-                        .triangleFirst = clusters.triangleFirst.data(),
-                        .corners = Corners(std::span<const Triangle>(clusters.triangles)),
-                        .vertexFirst = clusters.vertexFirst.data(),
-                        .vertices = clusters.vertices.data(),
-                        .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
-                        .greatestSlope = regions.greatestSlope.data(),
-                        .rows = rows.data(),
-                        .boxes = levels[0].data(),
-                        .haveCuts = haveCuts,
-                        .shapes = shapes.data(),
-                        .triangleShapes = triangleShapes.data()});
+    kernels.leafShapes(ShapeArgs(begin * kLanes, std::min(end * kLanes, clusters.clothLeaves), haveCuts));
   });
   ForBlocks([&](int begin, int end, int) {
     for (int leaf = begin * kLanes; leaf < std::min(end * kLanes, clusters.clothLeaves); ++leaf) {
@@ -245,15 +270,18 @@ void PairFinder::Impl::ShapeLeaves(std::span<const double> reach, bool haveCuts)
   });
 }
 
-void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPairs) {
+void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPairs, bool haveCuts) {
   leafPairs.Clear();
+  const LeafShapeArgs shapeArgs = ShapeArgs(0, clusters.clothLeaves, haveCuts);
   ForBlocks([&](int begin, int end, int chunk) {
+    TriangleShapesOf triangleShapes(kernels, shapeArgs);
+    const auto trianglesOf = std::ref(triangleShapes);
     const auto put = [&](const LeafPair* pairs, int count) {
       for (int i = 0; i < count; ++i) {
         const auto [a, b] = pairs[i];
         const std::int32_t pair = regions.Find(a, b);
         if (pair >= 0 && (areAllApart[Index(a)] != 0 ||
-                          regions.AreApart(pair, a, b, shapes, triangleShapes, kernels, Distance(reach, a)))) {
+                          regions.AreApart(pair, a, b, shapes, trianglesOf, kernels, Distance(reach, a)))) {
           continue;
         }
         leafPairs.Room(chunk)[0] = pairs[i];
@@ -375,7 +403,7 @@ void PairFinder::Find(const MeshMotion& motion, std::span<const double> reach, b
   s.BoxVertices(motion, reach);
   s.BoxLeaves();
   if (clothPairs) s.ShapeLeaves(reach, !motion.cut.empty());
-  s.SearchLeaves(reach, clothPairs);
+  s.SearchLeaves(reach, clothPairs, !motion.cut.empty());
   s.BoxItems();
   s.CompareItems();
 }
@@ -391,10 +419,10 @@ std::span<const VertexQuad> PairFinder::edgeEdge() const {
 std::size_t PairFinder::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   const Impl& s = *impl_;
-  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.triangleShapes) +
-                    bytes(s.areAllApart) + bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) +
-                    bytes(s.isTouched) + s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() +
-                    s.edgeEdgeLists.MemoryBytes() + s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
+  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.areAllApart) +
+                    bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.isTouched) +
+                    s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() + s.edgeEdgeLists.MemoryBytes() +
+                    s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
   for (const auto& level : s.levels) sum += bytes(level);
   return sum;
 }
