@@ -7,6 +7,8 @@ namespace percale::fabric {
 namespace {
 
 constexpr int kPairsPerChunk = 1024;
+/// Of so many pairs at a time the planes are found: they take 15 MB, and each thread of some has a few chunks.
+constexpr std::size_t kPairsAtOnce = 64 * kPairsPerChunk;
 /// Pairs that are not in contact, but nearer than so many times its distance, have a plane as well: they may be soon.
 constexpr double kSoon = 2;
 /// How stiff a contact is that begins, over the inertia of its sides, mass over h^2: stiff enough for what lies on
@@ -169,20 +171,26 @@ void Contacts::Remember(Contact& contact) {
 }
 
 void Contacts::AddPairs(PairKind kind, const NearPairs& pairs) {
-  const std::size_t count = pairs.size();
+  for (std::size_t first = 0; first < pairs.size(); first += kPairsAtOnce) {
+    AddPairs(kind, pairs, first, std::min(pairs.size(), first + kPairsAtOnce));
+  }
+}
+
+void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last) {
+  const std::size_t count = last - first;
   found_.resize(count);
   kept_.resize(count);
   states_.resize(count);
   executor_.ForChunks(static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk), [&](int chunk) {
     const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(count, begin + kPairsPerChunk);
-    StatesOf(kind, pairs.vertex.subspan(begin, end - begin), step_.start,
+    StatesOf(kind, pairs.vertex.subspan(first + begin, end - begin), step_.start,
              std::span(states_).subspan(begin, end - begin));
     for (std::size_t p = begin; p < end; ++p) {
-      const VertexQuad& vertex = pairs.vertex[p];
+      const VertexQuad& vertex = pairs.vertex[first + p];
       const PairState& now = states_[p];
-      const double distance = pairs.distance[p];
+      const double distance = pairs.distance[first + p];
       kept_[p] = 0;
-      if (!(now.gap > 0) || pairs.exempt[p]) continue;
+      if (!(now.gap > 0) || pairs.exempt[first + p]) continue;
       Corners<double> x, way;
       for (std::size_t k = 0; k < 4; ++k) {
         x[k] = From<double>(step_.start[Index(vertex[k])]);

@@ -102,6 +102,7 @@ class Contacts {
   static void Fit(double k, Contact& contact);
   double FrictionOf(const ContactSurface& a, const ContactSurface& b) const;
   void Remember(Contact& contact);
+  void AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last);
 
   const ContactMesh& mesh_;
   const Executor& executor_;
@@ -109,7 +110,7 @@ class Contacts {
   std::vector<std::uint8_t> border_;     // per vertex: 1 at a border
   Step step_;
   std::vector<Contact> contacts_;
-  std::vector<std::uint8_t> kept_;  // per pair while they are added
+  std::vector<std::uint8_t> kept_;  // per pair while they are added, some at a time
   std::vector<Contact> found_;
   std::vector<PairState> states_;
   std::vector<ExtraTerm> terms_;
