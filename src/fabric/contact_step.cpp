@@ -28,13 +28,13 @@ void PlaceCloth(const FabricModel& model, int cloth, std::vector<Vec3>& place) {
   const int firstVertex = model.firstVertex[Index(cloth)], endVertex = model.firstVertex[Index(cloth) + 1];
   std::vector<Vec2> flat(Index(endVertex - firstVertex));
   std::vector<std::uint8_t> known(flat.size(), 0);
-  bool one = !model.material.empty();
+  bool one = !model.chart.empty();
   for (int t = model.firstTriangle[Index(cloth)]; one && t < model.firstTriangle[Index(cloth) + 1]; ++t) {
     const Triangle& triangle = model.triangles[Index(t)];
     const std::int32_t corner[3] = {triangle.a, triangle.b, triangle.c};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t v = Index(corner[k] - firstVertex);
-      const Vec2& at = model.material[3 * Index(t) + k];
+      const Vec2& at = model.Material(Index(t), static_cast<int>(k));
       if (!known[v]) flat[v] = at;
       known[v] = 1;
       one = one && flat[v] == at;

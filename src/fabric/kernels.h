@@ -26,9 +26,10 @@ inline constexpr int kHessianReals = 28;
 struct MembraneArgs {
   int begin, end;
   const Triangle* triangles;
-  const Vec3* x;             ///< Positions [m].
-  const double* area;        ///< At rest [m^2]; padded, as are the next four.
-  const double* inverse[4];  ///< RestTriangle::inverse, one array per entry [1/m].
+  const Vec3* x;                   ///< Positions [m].
+  const Triangle* chartTriangles;  ///< The triangles, of points of the chart.
+  const Vec2* chart;               ///< Where they lie in the material [m].
+  const double* strength;          ///< Of each, over that of the law; or null: one.
   MembraneLaw law;
   StVenantKirchhoff<double> orthotropic;
   StableNeoHookean<double> neoHookean;

@@ -52,7 +52,11 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
     plateDiagonal_[Index(row)] = plates.value[Index(std::lower_bound(begin, end, row) - plates.column.begin())];
   }
   SetStep(h);
-  const MaterialMesh material{model_.triangles, model_.chartTriangles, model_.chart};
+  MaterialMesh material{.triangles = model_.triangles, .materialTriangles = {}, .material = {}};
+  if (model_.hasPanels) {
+    material.materialTriangles = model_.ChartTriangles();
+    material.material = model_.chart;
+  }
   multigrid_.SetUp(matrix_, MakeHierarchy(matrix_.pattern(), material, pinned));
   conjugateGradient_.SetUp(model_.vertexCount);
 }

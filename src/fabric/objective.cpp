@@ -40,12 +40,6 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
       batches_.push_back({c, t, std::min(t + kRowsPerChunk, end)});
     }
   }
-  for (std::vector<double>* padded : {&area_, &inverse_[0], &inverse_[1], &inverse_[2], &inverse_[3], &buckling_}) {
-    padded->assign(triangles + kTrianglePad, 0);
-  }
-  for (std::size_t t = 0; t < triangles; ++t) {
-    for (std::size_t k = 0; k < 4; ++k) inverse_[k][t] = model.rest[t].inverse[k];
-  }
   const auto live = std::min(triangles, static_cast<std::size_t>(window_.slots) * kRowsPerChunk);
   triangleGradient_.resize(3 * live);
   triangleHessian_.assign(kHessianReals * live, 0);
@@ -56,12 +50,9 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
 }
 
 void Objective::TakeMaterials() {
-  // A patch counts as so much more membrane.
-  for (std::size_t t = 0; t < model_.rest.size(); ++t) area_[t] = model_.rest[t].area * model_.strength[t];
-  std::copy(model_.buckling.begin(), model_.buckling.end(), buckling_.begin());
   const bool damped = std::any_of(model_.membranes.begin(), model_.membranes.end(),
                                   [](const Membrane& membrane) { return membrane.damping > 0; });
-  for (std::vector<double>& padded : startStrain_) padded.resize(damped ? area_.size() : 0);
+  for (std::vector<double>& padded : startStrain_) padded.resize(damped ? model_.triangles.size() + kTrianglePad : 0);
   const std::size_t hinges = model_.anyHinges ? model_.hinges.size() : 0;
   for (std::vector<double>* perHinge : {&startAngle_, &angle_, &moment_}) perHinge->resize(hinges);
   hinge_.resize(hinges);
@@ -176,14 +167,15 @@ MembraneArgs Objective::Arguments(std::span<const Vec3> y, const Batch& of) {
           .end = of.end,
           .triangles = model_.triangles.data(),
           .x = y.data(),
-          .area = area_.data(),
-          .inverse = {inverse_[0].data(), inverse_[1].data(), inverse_[2].data(), inverse_[3].data()},
+          .chartTriangles = model_.ChartTriangles().data(),
+          .chart = model_.chart.data(),
+          .strength = model_.strength.empty() ? nullptr : model_.strength.data(),
           .law = membrane.kind,
           .orthotropic = membrane.orthotropic,
           .neoHookean = membrane.neoHookean,
           .damping = membrane.damping * perStep,
           .startStrain = {startStrain_[0].data(), startStrain_[1].data(), startStrain_[2].data()},
-          .buckling = buckling_.data(),
+          .buckling = model_.buckling.data(),
           .compression = kCompressionShare * perStep,
           .outFirst = of.begin,
           .gradient = triangleGradient_.data() + 3 * Index(Place(of.begin)),

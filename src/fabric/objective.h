@@ -95,7 +95,7 @@ class Objective {
   Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:
-  std::vector<double> area_, inverse_[4], startStrain_[3], buckling_;
+  std::vector<double> startStrain_[3];
   // The same of those that are needed at once:
   Window window_;  // of kRowsPerChunk triangles each, for kRowsPerSlab rows of the matrix each
   std::vector<Vec3> triangleGradient_;

@@ -31,17 +31,17 @@ struct Triangles {
       const auto vertex = [&] { return static_cast<std::int32_t>(random.Next() % x.size()); };
       const std::int32_t a = vertex();
       triangles.push_back({a, t % 7 == 3 ? a : vertex(), t % 5 == 2 ? a : vertex()});
-      rest.push_back(t % 11 == 6 ? RestTriangle<double>{}
-                                 : MakeRestTriangle({0, 0}, {1 + 0.3 * unit(), unit()}, {0.5 * unit(), 1.0}));
+      chartTriangles.push_back({3 * t + 1, 3 * t, 3 * t + 2});
+      const Vec2 b{1 + 0.3 * unit(), unit()}, c{0.5 * unit(), 1.0};
+      chart.insert(chart.end(), {b, Vec2{0, 0}, t % 11 == 6 ? b : c});
+      const auto corner = [&](std::int32_t p) { return MaterialPoint{chart[Index(p)].x, chart[Index(p)].y}; };
+      rest.push_back(MakeRestTriangle(corner(3 * t + 1), corner(3 * t), corner(3 * t + 2)));
+      strength.push_back(1 + t % 3);
+      rest.back().area *= strength.back();
     }
     const std::size_t padded = Index(count + kTrianglePad);
-    for (std::vector<double>* array :
-         {&area, &inverse[0], &inverse[1], &inverse[2], &inverse[3], &start[0], &start[1], &start[2], &buckling}) {
-      array->assign(padded, 0);
-    }
+    for (std::vector<double>* array : {&start[0], &start[1], &start[2], &buckling}) array->assign(padded, 0);
     for (std::size_t t = 0; t < rest.size(); ++t) {
-      area[t] = rest[t].area;
-      for (std::size_t k = 0; k < 4; ++k) inverse[k][t] = rest[t].inverse[k];
       for (std::vector<double>& strain : start) strain[t] = 0.1 * unit();
       buckling[t] = random.NextUnit();
     }
@@ -54,8 +54,9 @@ struct Triangles {
             .end = end,
             .triangles = triangles.data(),
             .x = x.data(),
-            .area = area.data(),
-            .inverse = {inverse[0].data(), inverse[1].data(), inverse[2].data(), inverse[3].data()},
+            .chartTriangles = chartTriangles.data(),
+            .chart = chart.data(),
+            .strength = strength.data(),
             .law = law,
             .orthotropic = orthotropic,
             .neoHookean = neoHookean,
@@ -75,8 +76,10 @@ struct Triangles {
   SplitMix64 random{5};
   std::vector<Vec3> x;
   std::vector<Triangle> triangles;
-  std::vector<RestTriangle<double>> rest;
-  std::vector<double> area, inverse[4], start[3], buckling;
+  std::vector<RestTriangle<double>> rest;  // area times strength
+  std::vector<Triangle> chartTriangles;
+  std::vector<Vec2> chart;
+  std::vector<double> strength, start[3], buckling;
   StVenantKirchhoff<double> orthotropic{300, 60, 200, 100, 0.2, 0.3, 1000, 2000};
   StableNeoHookean<double> neoHookean = NeoHookeanMembrane(261, 0.24);
   std::vector<Vec3> gradient;
