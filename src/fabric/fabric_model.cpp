@@ -135,7 +135,8 @@ Plate PlateOf(const FabricModel& model, std::int32_t triangle) {
 
 /// Adds up the plates row by row: what touches a vertex are its own triangles, and those across an edge from it.
 void AssemblePlates(FabricModel& model) {
-  model.plates = {};
+  model.plates = ScalarMatrix();
+  model.plates.first.reserve(Index(model.vertexCount) + 1);
   model.plates.first.push_back(0);
   std::vector<std::int32_t> triangles;
   std::vector<std::pair<std::int32_t, double>> row;

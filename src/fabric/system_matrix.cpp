@@ -156,6 +156,8 @@ void SystemMatrix::SetUp(const ScalarMatrix& constant, std::span<const std::uint
   restFirst_.assign(1, 0);
   restColumn_.clear();
   restValue_.clear();
+  restColumn_.reserve(constant.column.size());
+  restValue_.reserve(constant.column.size());
   for (int row = 0; row < n; ++row) {
     for (std::int32_t k = constant.first[row]; k < constant.first[row + 1]; ++k) {
       const std::int32_t column = constant.column[k];
@@ -172,13 +174,7 @@ void SystemMatrix::SetUp(const ScalarMatrix& constant, std::span<const std::uint
   cleared_.shrink_to_fit();
   restColumn_.shrink_to_fit();
   restValue_.shrink_to_fit();
-  extra_.begin.assign(n, 0);
-  extra_.end.assign(n, 0);
   extra_.any = false;
-}
-
-ScalarMatrix SystemMatrix::Rest() const {
-  return {restFirst_, restColumn_, {restValue_.begin(), restValue_.end()}};
 }
 
 void SystemMatrix::Reset(const Executor& executor) {
@@ -201,7 +197,8 @@ void SystemMatrix::SetExtra(std::span<const ExtraTerm> terms, const Executor& ex
   if (!extra_.any) return;
   // Which terms each row is in, and room for a block per other vertex of each.
   extraFirst_.assign(static_cast<std::size_t>(n) + 1, 0);
-  std::fill(extra_.end.begin(), extra_.end.end(), 0);
+  extra_.begin.resize(n);
+  extra_.end.assign(n, 0);
   for (const ExtraTerm& t : terms) {
     int vertices = 0;
     for (int k = 0; k < 4; ++k) vertices += counts(t, k) ? 1 : 0;

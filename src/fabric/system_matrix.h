@@ -56,6 +56,11 @@ struct ScalarMatrix {
 };
 /// Appends a row of (column, value), in any order; entries of one column add up in the order in which they are given.
 void AppendRow(ScalarMatrix& matrix, std::vector<std::pair<std::int32_t, double>>& row);
+/// The same in memory of others.
+struct ScalarRows {
+  std::span<const std::int32_t> first, column;
+  std::span<const Real> value;
+};
 struct ScalarEntry {
   std::int32_t row = 0, column = 0;
   double value = 0;
@@ -93,7 +98,7 @@ class SystemMatrix {
   int rows() const { return pattern_.rows(); }
   const BlockPattern& pattern() const { return pattern_; }
   /// S without rows and columns of pinned vertices and without what lies within the pattern, which Reset puts there.
-  ScalarMatrix Rest() const;
+  ScalarRows Rest() const { return {restFirst_, restColumn_, restValue_}; }
   bool Pinned(int row) const { return !pinned_.empty() && pinned_[row]; }
 
   // In this order for each Newton step:
