@@ -43,14 +43,7 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
   std::vector<std::uint8_t> pinned(free.size());
   for (std::size_t v = 0; v < free.size(); ++v) pinned[v] = free[v] ? 0 : 1;
   objective_.TakeMaterials();
-  const ScalarMatrix& plates = model_.plates;
-  matrix_.SetUp(plates, pinned);
-  plateDiagonal_.resize(Index(model_.vertexCount));
-  for (int row = 0; row < model_.vertexCount; ++row) {
-    const auto begin = plates.column.begin() + plates.first[Index(row)];
-    const auto end = plates.column.begin() + plates.first[Index(row) + 1];
-    plateDiagonal_[Index(row)] = plates.value[Index(std::lower_bound(begin, end, row) - plates.column.begin())];
-  }
+  matrix_.SetUp(model_.plates, pinned);
   SetStep(h);
   MaterialMesh material{.triangles = model_.triangles, .materialTriangles = {}, .material = {}};
   if (model_.hasPanels) {
@@ -63,10 +56,13 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
 
 /// Inertia is all that the length of a step changes in the constant part: masses over h^2 on the diagonal.
 void NewtonSolver::SetStep(double h) {
-  for (int row = 0; row < model_.vertexCount; ++row) {
-    const double inertia = model_.mass[Index(row)] / (h * h);
-    matrix_.SetConstant(row, static_cast<Real>(plateDiagonal_[Index(row)] + inertia));
-  }
+  const ScalarMatrix& plates = model_.plates;
+  ForRange(executor_, Index(model_.vertexCount), [&](int row) {
+    const auto begin = plates.column.begin() + plates.first[Index(row)];
+    const auto end = plates.column.begin() + plates.first[Index(row) + 1];
+    const double bending = plates.value[Index(std::lower_bound(begin, end, row) - plates.column.begin())];
+    matrix_.SetConstant(row, static_cast<Real>(bending + model_.mass[Index(row)] / (h * h)));
+  });
 }
 
 NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonSettings& settings) {

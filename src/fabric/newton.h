@@ -54,7 +54,6 @@ class NewtonSolver {
   Objective objective_;
   Multigrid multigrid_;
   ConjugateGradient conjugateGradient_;
-  std::vector<double> plateDiagonal_;  // per vertex [N/m]
   std::vector<Vec3> gradient_, trial_;
   RealVector right_, direction_;
   double trialEnergy_ = 0;
