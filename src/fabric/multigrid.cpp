@@ -240,7 +240,6 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
     above = &level.matrix;
   }
   product_.assign(9 * greatestProduct + 1, 0);
-  fineScratch_.assign(VectorLength(fine.rows()), 0);
   if (!levels_.empty()) {
     for (ExtraPart& part : parts_) part.place.assign(levels_.front()->p.nodes, -1);
   }
@@ -415,11 +414,11 @@ void Multigrid::SolveCoarsest(const SystemMatrix& matrix, const Real* r, Real* z
   }
 }
 
-void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, const Executor& executor) {
+void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, Real* scratch, const Executor& executor) {
   const auto matrixOf = [&](int k) -> const SystemMatrix& { return k == 0 ? fine : levels_[k - 1]->matrix; };
   const auto rightOf = [&](int k) { return k == 0 ? r : levels_[k - 1]->right.data(); };
   const auto solutionOf = [&](int k) { return k == 0 ? z : levels_[k - 1]->solution.data(); };
-  const auto scratchOf = [&](int k) { return k == 0 ? fineScratch_.data() : levels_[k - 1]->scratch.data(); };
+  const auto scratchOf = [&](int k) { return k == 0 ? scratch : levels_[k - 1]->scratch.data(); };
   for (int k = 0; k < levels(); ++k) {
     matrixOf(k).SmoothFromZero(kOmega, rightOf(k), solutionOf(k), executor);
     matrixOf(k).Residual(rightOf(k), solutionOf(k), scratchOf(k), executor);
@@ -457,7 +456,7 @@ void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, const Ex
 }
 
 std::size_t Multigrid::MemoryBytes() const {
-  std::size_t bytes = Bytes(product_) + Bytes(fineScratch_) + Bytes(denseVector_);
+  std::size_t bytes = Bytes(product_) + Bytes(denseVector_);
   bytes += 2 * sizeof(double) * static_cast<std::size_t>(dense_.size()) * dense_.size();
   bytes +=
       Bytes(extraProduct_.begin) + Bytes(extraProduct_.end) + Bytes(extraProduct_.column) + Bytes(extraProduct_.block);

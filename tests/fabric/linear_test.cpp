@@ -107,8 +107,8 @@ struct Solver : System {
 
   RealVector Solve(const RealVector& b, SolveResult& result, const SolveSettings& settings,
                    const Executor& executor = Serial()) {
-    RealVector x(VectorLength(matrix.rows()), 0);
-    result = gradient.Solve(matrix, multigrid, b.data(), x.data(), settings, executor);
+    RealVector x(VectorLength(matrix.rows()), 0), residual = b;
+    result = gradient.Solve(matrix, multigrid, residual.data(), x.data(), settings, executor);
     return x;
   }
   int Iterations(const RealVector& b, double tolerance) {
@@ -316,13 +316,13 @@ TEST_CASE("contacts alone can be filled anew") {
   const Sheet sheet = Square(40);
   Solver solver(sheet, true, {}, RemotePairs(sheet, 100, 1000));
   const RealVector b = RandomVector(sheet.vertices(), 3, sheet.pinned);
-  RealVector whole(VectorLength(sheet.vertices()), 0), part = whole;
+  RealVector whole(VectorLength(sheet.vertices()), 0), part = whole, scratch = whole;
   for (const int pairs : {300, 0, 20}) {
     solver.Fill(sheet, Serial(), {}, RemotePairs(sheet, pairs, 500));
     solver.multigrid.RefillExtra(solver.matrix, Serial());
-    solver.multigrid.Apply(solver.matrix, b.data(), part.data(), Serial());
+    solver.multigrid.Apply(solver.matrix, b.data(), part.data(), scratch.data(), Serial());
     solver.multigrid.Refill(solver.matrix, Serial());
-    solver.multigrid.Apply(solver.matrix, b.data(), whole.data(), Serial());
+    solver.multigrid.Apply(solver.matrix, b.data(), whole.data(), scratch.data(), Serial());
     CHECK(part == whole);
   }
 }
@@ -335,10 +335,10 @@ TEST_CASE("a cycle is a symmetric and positive definite operator, and close to t
       Solver solver(sheet, material, {}, RemotePairs(sheet, pairs, 261));
       REQUIRE(solver.multigrid.levels() >= 1);
       Dense cycle(3 * n, 3 * n);
-      RealVector unit(VectorLength(n), 0), z = unit;
+      RealVector unit(VectorLength(n), 0), z = unit, scratch = unit;
       for (int k = 0; k < 3 * n; ++k) {
         unit[k] = 1;
-        solver.multigrid.Apply(solver.matrix, unit.data(), z.data(), Serial());
+        solver.multigrid.Apply(solver.matrix, unit.data(), z.data(), scratch.data(), Serial());
         unit[k] = 0;
         cycle.col(k) = ToEigen(z, n);
       }
