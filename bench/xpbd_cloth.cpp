@@ -29,7 +29,8 @@ XpbdCloth::XpbdCloth(const fabric::FabricModel& model, std::span<const std::uint
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const auto& law = model.membranes[static_cast<std::size_t>(model.clothOf[t])].orthotropic;
     Matrix3<double> stiffness{{law.c11, law.c12, 0, law.c12, law.c22, 0, 0, 0, law.c33}};
-    compliance_.push_back(Inverse(stiffness * model.rest[t].area));
+    rest_.push_back(model.Rest(t));
+    compliance_.push_back(Inverse(stiffness * rest_[t].area));
   }
   hingeStiffness_.assign(model.hinges.size(), 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
@@ -59,7 +60,7 @@ void XpbdCloth::Frame(double seconds, int substeps, const Vec3& gravity) {
 void XpbdCloth::SolveTriangle(std::size_t t, double perStep) {
   const Triangle& tri = model_.triangles[t];
   const std::int32_t v[3] = {tri.a, tri.b, tri.c};
-  const auto& rest = model_.rest[t];
+  const auto& rest = rest_[t];
   const DeformationGradient<double> f =
       Deformation(rest, At(position_, tri.a), At(position_, tri.b), At(position_, tri.c));
   const fabric::MembraneStrain<double> strain = GreenStrain(f);
@@ -106,7 +107,7 @@ double Stretch99(const fabric::FabricModel& model, std::span<const Vec3> positio
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& tri = model.triangles[t];
     const DeformationGradient<double> f =
-        Deformation(model.rest[t], At(positions, tri.a), At(positions, tri.b), At(positions, tri.c));
+        Deformation(model.Rest(t), At(positions, tri.a), At(positions, tri.b), At(positions, tri.c));
     const double uu = Dot(f.u, f.u), vv = Dot(f.v, f.v), uv = Dot(f.u, f.v);
     stretch.push_back(std::sqrt(0.5 * (uu + vv) + std::sqrt(0.25 * (uu - vv) * (uu - vv) + uv * uv)));
   }

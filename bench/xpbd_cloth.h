@@ -27,9 +27,10 @@ class XpbdCloth {
   void SolveHinge(std::size_t hinge, double perStep);
 
   const fabric::FabricModel& model_;
-  std::vector<double> inverseMass_;          // per vertex [1/kg], 0 for pins
-  std::vector<Matrix3<double>> compliance_;  // per triangle: of its three strains [1/J]
-  std::vector<double> hingeStiffness_;       // per hinge, of the jump of slope [J]
+  std::vector<double> inverseMass_;                 // per vertex [1/kg], 0 for pins
+  std::vector<fabric::RestTriangle<double>> rest_;  // per triangle
+  std::vector<Matrix3<double>> compliance_;         // per triangle: of its three strains [1/J]
+  std::vector<double> hingeStiffness_;              // per hinge, of the jump of slope [J]
   std::vector<Vec3> position_, previous_, velocity_;
 };
 

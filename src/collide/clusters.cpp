@@ -89,6 +89,7 @@ void Cut(std::span<Item> items, std::size_t group = kLeafItems) {
 
 std::vector<Item> MakeItems(const ContactMesh& mesh, const EdgeMap& edgeMap) {
   std::vector<Item> items;
+  items.reserve(mesh.triangles.size());
   std::vector<char> edgeSeen(mesh.edges.size(), 0), vertexSeen(Index(mesh.vertices()), 0);
   const auto add = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
     Item item = {{a, b, c}, {0, 0, 0}};
@@ -124,7 +125,8 @@ Clusters MakeClusters(const ContactMesh& mesh) {
   const EdgeMap edgeMap(mesh);
   std::vector<Item> items = MakeItems(mesh, edgeMap);
   const auto bodyOf = [&](const Item& item) { return mesh.body[Index(item.corners[0])]; };
-  std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return bodyOf(a) < bodyOf(b); });
+  const auto before = [&](const Item& a, const Item& b) { return bodyOf(a) < bodyOf(b); };
+  if (!std::is_sorted(items.begin(), items.end(), before)) std::stable_sort(items.begin(), items.end(), before);
 
   Clusters clusters;
   std::vector<char> vertexOwned(Index(mesh.vertices()), 0), edgeOwned(mesh.edges.size(), 0);

@@ -197,13 +197,17 @@ void Builder::FindNeighbours() {
 
 /// Leaves that share a vertex, and those nearly as close: it takes leaves' altitudes.
 void Builder::FindLeafNeighbours() {
-  std::vector<std::vector<std::int32_t>> leavesOf(Index(mesh_.vertices()));
+  // Leaves of each vertex, ascending: of vertex v at [first[v], first[v + 1]).
+  std::vector<std::int32_t> first(Index(mesh_.vertices()) + 1, 0);
+  for (const std::int32_t v : clusters_.vertices) ++first[Index(v) + 1];
+  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+  std::vector<std::int32_t> leavesOf(clusters_.vertices.size()), end(first.begin(), first.end() - 1);
   std::vector<std::array<Vec3, 2>> boxes;  // of places
   for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec3 low = {kInfinity, kInfinity, kInfinity}, high = -low;
     for (const std::int32_t v : clusters_.Vertices(leaf)) {
-      leavesOf[Index(v)].push_back(leaf);
+      leavesOf[Index(end[Index(v)]++)] = leaf;
       const Vec3& p = mesh_.place[Index(v)];
       low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
@@ -214,7 +218,7 @@ void Builder::FindLeafNeighbours() {
   for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
     auto& all = sharing[Index(leaf)];
     for (const std::int32_t v : clusters_.Vertices(leaf)) {
-      all.insert(all.end(), leavesOf[Index(v)].begin(), leavesOf[Index(v)].end());
+      all.insert(all.end(), leavesOf.begin() + first[Index(v)], leavesOf.begin() + end[Index(v)]);
     }
     Unite(all);
   }
@@ -386,8 +390,8 @@ bool FlatRegions::AreAllApart(std::int32_t leaf, std::span<const LeafShape> shap
 }
 
 bool FlatRegions::AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, std::span<const LeafShape> shapes,
-                           std::span<const TriangleShapes> triangleShapes, const Kernels& kernels,
-                           float distance) const {
+                           const std::function<const TriangleShapes&(std::int32_t)>& trianglesOf,
+                           const Kernels& kernels, float distance) const {
   float x[3], y[3];  // of G
   for (int i = 0; i < 3; ++i) {
     x[i] = (shapes[Index(a)].x[i] + shapes[Index(b)].x[i]) / 2;
@@ -404,7 +408,7 @@ bool FlatRegions::AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, st
     const float root = (fxx + fyy) / 2 - norm * f.deviation - least;
     const float square = (fxx - fyy) * (fxx - fyy) / 4 + fxy * fxy;
     if (root > 0 && root * root > square) continue;
-    if (!kernels.areMonotone(triangleShapes[Index(leaf)], x, y, least + norm * f.error)) return false;
+    if (!kernels.areMonotone(trianglesOf(leaf), x, y, least + norm * f.error)) return false;
   }
   return true;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -43,10 +44,10 @@ struct FlatRegions {
   /// The number of the pair, or -1.
   std::int32_t Find(std::int32_t a, std::int32_t b) const;
   /// Whether no two items of the pair's leaves a and b without a vertex in common come within that distance. `shapes`:
-  /// per leaf.
+  /// per leaf; `trianglesOf(leaf)` is asked for where they do not tell.
   bool AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, std::span<const collide::LeafShape> shapes,
-                std::span<const collide::TriangleShapes> triangleShapes, const collide::Kernels& kernels,
-                float distance) const;
+                const std::function<const collide::TriangleShapes&(std::int32_t)>& trianglesOf,
+                const collide::Kernels& kernels, float distance) const;
   std::size_t MemoryBytes() const;
 };
 

@@ -45,25 +45,58 @@ struct Bounds {
     const Vec3 d = high - low;
     return d.x * d.y + d.y * d.z + d.z * d.x;
   }
-  bool Meets(const Bounds& o) const {
-    return (low.x <= o.high.x) & (o.low.x <= high.x) & (low.y <= o.high.y) & (o.low.y <= high.y) & (low.z <= o.high.z) &
-           (o.low.z <= high.z);
-  }
 };
+
+/// Bounds in half of the memory, rounded outwards: where bounds meet, so do these.
+struct Box {
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+  float low[3]{kFar, kFar, kFar}, high[3]{-kFar, -kFar, -kFar};
+
+  void Add(const Box& o) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], o.low[k]);
+      high[k] = std::max(high[k], o.high[k]);
+    }
+  }
+  bool Meets(const Box& o) const {
+    return (low[0] <= o.high[0]) & (o.low[0] <= high[0]) & (low[1] <= o.high[1]) & (o.low[1] <= high[1]) &
+           (low[2] <= o.high[2]) & (o.low[2] <= high[2]);
+  }
+  /// Twice where its middle is along an axis.
+  float Centre(int axis) const { return low[axis] + high[axis]; }
+};
+
+/// The nearest floats are wrong by half of the first of these, relatively, or by less than the second.
+constexpr double kFloatError = 0x1p-23, kLeastError = 1e-38;
+/// Half of the largest float, so that sums of two are none that is infinite.
+constexpr double kLargest = 1e38;
+
+float Float(double a) {
+  return static_cast<float>(std::clamp(a, -kLargest, kLargest));
+}
+Box Round(const Bounds& b) {
+  const double low[3] = {b.low.x, b.low.y, b.low.z}, high[3] = {b.high.x, b.high.y, b.high.z};
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.low[k] = Float(low[k] - (std::abs(low[k]) * kFloatError + kLeastError));
+    box.high[k] = Float(high[k] + (std::abs(high[k]) * kFloatError + kLeastError));
+  }
+  return box;
+}
 
 using Corners = std::array<std::int32_t, 3>;
 
 /// A triangle on its way into a leaf of the tree.
 struct Placed {
-  double centre[3];  // twice of it [m]
+  Box box;
   std::int32_t triangle;
 };
 
 /// A part of the tree. What it consists of follows it; `next` comes behind all that.
 struct Node {
-  Bounds bounds;
-  std::size_t next = 0;
-  std::size_t firstLeaf = 0, endLeaf = 0;
+  Box box;
+  std::uint32_t next = 0;
+  std::uint32_t firstLeaf = 0, endLeaf = 0;
   bool obstaclesOnly = false;
 };
 
@@ -96,18 +129,16 @@ struct Found {
 struct IntersectionJudge::Impl {
   struct OwnEdge {
     std::int32_t a, b;  // a < b
-    Bounds bounds;
+    Box box;
   };
 
   int vertices, obstacles;
   std::vector<Corners> corners;        // per triangle
   std::vector<std::uint8_t> ownsSide;  // per triangle: bit k if it stands for the edge from corner k to the next
-  std::vector<Vec3> x;                 // positions, as they count
-  std::vector<Vec3> seen;              // positions in the frame of the bounds
+  std::span<const Vec3> positions;     // while they are judged
+  std::vector<Vec3> seen;              // positions as they count, in the frame of the boxes
   double slack = 0;                    // of the triangles' bounds, for what `seen` has lost to rounding
-  std::vector<Bounds> bounds;          // per triangle
-  std::vector<Placed> placed;          // those of a leaf side by side
-  std::vector<Bounds> placedBounds;    // in the same order
+  std::vector<Placed> placed;          // triangles, those of a leaf side by side
   std::vector<Node> nodes;
   std::vector<Found> found;  // per chunk of leaves
 
@@ -118,6 +149,7 @@ struct IntersectionJudge::Impl {
     };
     std::vector<Side> sides;
     sides.reserve(3 * triangles.size());
+    corners.reserve(triangles.size());
     for (const Triangle& t : triangles) {
       const Corners c = {t.a, t.b, t.c};
       const auto number = static_cast<std::int32_t>(corners.size());
@@ -136,11 +168,9 @@ struct IntersectionJudge::Impl {
       if (i > 0 && sides[i].a == sides[i - 1].a && sides[i].b == sides[i - 1].b) continue;
       ownsSide[Z(sides[i].triangle)] |= static_cast<std::uint8_t>(1 << sides[i].corner);
     }
-    x.resize(Z(vertices));
+    sides = std::vector<Side>();  // unlike `= {}` that gives the memory back
     seen.resize(Z(vertices));
-    bounds.resize(corners.size());
     placed.resize(corners.size());
-    placedBounds.resize(corners.size());
     for (std::size_t t = 0; t < placed.size(); ++t) placed[t].triangle = static_cast<std::int32_t>(t);
     const std::size_t leaves = Leaves();
     nodes.resize(leaves == 0 ? 0 : 2 * leaves - 1);
@@ -151,64 +181,68 @@ struct IntersectionJudge::Impl {
   std::size_t LeafBegin(std::size_t leaf) const { return std::min(leaf * kLeafTriangles, corners.size()); }
   bool IsObstacle(std::int32_t vertex) const { return vertex >= obstacles; }
 
-  void TakePositions(std::span<const Vec3> positions, const Executor& executor) {
+  /// A position as it counts.
+  Vec3 At(std::int32_t v) const {
     const auto counted = [](double a) {
       assert(std::abs(a) <= kLargestExact);
       return std::abs(a) < kSmallestExact ? 0.0 : a;
     };
-    for (std::size_t v = 0; v < x.size(); ++v)
-      x[v] = {counted(positions[v].x), counted(positions[v].y), counted(positions[v].z)};
+    const Vec3& p = positions[Z(v)];
+    return {counted(p.x), counted(p.y), counted(p.z)};
+  }
+
+  void TakePositions(const Executor& executor) {
     ChooseFrame();
     const std::size_t chunks = (corners.size() + kChunkTriangles - 1) / kChunkTriangles;
     executor.ForChunks(static_cast<int>(chunks), [&](int chunk) {
       const std::size_t begin = std::size_t(chunk) * kChunkTriangles;
       for (std::size_t i = begin; i < std::min(begin + kChunkTriangles, corners.size()); ++i) {
-        const std::int32_t t = placed[i].triangle;
-        Bounds& b = bounds[Z(t)] = BoundsOf(corners[Z(t)], seen);
+        Bounds b = BoundsOf(corners[Z(placed[i].triangle)]);
         b.Widen(slack);
-        const Vec3 centre = b.low + b.high;
-        placed[i] = {{centre.x, centre.y, centre.z}, t};
+        placed[i].box = Round(b);
       }
     });
   }
 
   /// Long thin triangles across all axes have bounds that meet all others. Where the frame of the triangle with the
-  /// longest side has much smaller ones, it is taken.
+  /// longest side has much smaller ones, it is taken. Floats are exact near zero: there the first vertex is.
   void ChooseFrame() {
-    double longest = 0, farthest = 0;
+    for (std::int32_t v = 0; v < vertices; ++v) seen[Z(v)] = At(v);
+    double longest = 0, farthest = 0, straight = 0;
     Vec3 along{1, 0, 0}, across{0, 1, 0};
     for (const Corners& c : corners) {
+      straight += BoundsOf(c).Area();
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 side = x[Z(c[(k + 1) % 3])] - x[Z(c[k])];
+        const Vec3 side = seen[Z(c[(k + 1) % 3])] - seen[Z(c[k])];
         if (Dot(side, side) <= longest) continue;
         longest = Dot(side, side);
         along = side;
-        across = x[Z(c[(k + 2) % 3])] - x[Z(c[k])];
+        across = seen[Z(c[(k + 2) % 3])] - seen[Z(c[k])];
       }
     }
     along = UnitOr(along, {1, 0, 0});
     const Vec3 normal = UnitOr(Cross(along, across), {0, 0, 1}), third = Cross(normal, along);
-    for (std::size_t v = 0; v < x.size(); ++v) {
-      farthest = std::max(farthest, std::abs(x[v].x) + std::abs(x[v].y) + std::abs(x[v].z));
-      seen[v] = {Dot(along, x[v]), Dot(third, x[v]), Dot(normal, x[v])};
+    for (Vec3& p : seen) {
+      farthest = std::max(farthest, std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
+      p = {Dot(along, p), Dot(third, p), Dot(normal, p)};
     }
-    double turned = 0, straight = 0;
-    for (const Corners& c : corners) {
-      turned += BoundsOf(c, seen).Area();
-      straight += BoundsOf(c, x).Area();
-    }
+    double turned = 0;
+    for (const Corners& c : corners) turned += BoundsOf(c).Area();
     // What has a point in common has overlapping exact bounds along any direction. Each end of theirs is wrong by three
     // roundings of at most `farthest`, and widening adds one.
     constexpr double kHalfUlp = 0x1p-53;
     slack = 8 * kHalfUlp * farthest;
-    if (turned < kMuchSmaller * straight) return;
-    seen = x;
-    slack = 0;
+    if (!(turned < kMuchSmaller * straight)) {
+      for (std::int32_t v = 0; v < vertices; ++v) seen[Z(v)] = At(v);
+      slack = 0;
+    }
+    const Vec3 origin = seen[0];
+    for (Vec3& p : seen) p -= origin;
   }
 
-  static Bounds BoundsOf(const Corners& c, const std::vector<Vec3>& at) {
+  Bounds BoundsOf(const Corners& c) const {
     Bounds b;
-    for (const std::int32_t v : c) b.Add(at[Z(v)]);
+    for (const std::int32_t v : c) b.Add(seen[Z(v)]);
     return b;
   }
 
@@ -218,29 +252,29 @@ struct IntersectionJudge::Impl {
     const std::size_t middle = node.firstLeaf + (node.endLeaf - node.firstLeaf) / 2;
     const auto begin = placed.begin() + std::ptrdiff_t(LeafBegin(node.firstLeaf));
     const auto end = placed.begin() + std::ptrdiff_t(LeafBegin(node.endLeaf));
-    double low[3] = {Bounds::kFar, Bounds::kFar, Bounds::kFar}, high[3] = {-Bounds::kFar, -Bounds::kFar, -Bounds::kFar};
+    Box centres;
     for (auto p = begin; p != end; ++p) {
       for (int k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], p->centre[k]);
-        high[k] = std::max(high[k], p->centre[k]);
+        centres.low[k] = std::min(centres.low[k], p->box.Centre(k));
+        centres.high[k] = std::max(centres.high[k], p->box.Centre(k));
       }
     }
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
-      if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+      if (centres.high[k] - centres.low[k] > centres.high[axis] - centres.low[axis]) axis = k;
     }
     std::nth_element(begin, placed.begin() + std::ptrdiff_t(LeafBegin(middle)), end,
-                     [axis](const Placed& a, const Placed& b) { return a.centre[axis] < b.centre[axis]; });
+                     [axis](const Placed& a, const Placed& b) { return a.box.Centre(axis) < b.box.Centre(axis); });
     const std::size_t left = at + 1, right = left + 2 * (middle - node.firstLeaf) - 1;
-    nodes[left] = {{}, right, node.firstLeaf, middle, false};
-    nodes[right] = {{}, node.next, middle, node.endLeaf, false};
+    nodes[left] = {{}, static_cast<std::uint32_t>(right), node.firstLeaf, static_cast<std::uint32_t>(middle), false};
+    nodes[right] = {{}, node.next, static_cast<std::uint32_t>(middle), node.endLeaf, false};
   }
 
   void Gather(std::size_t at) {
     Node& node = nodes[at];
     const Node &left = nodes[at + 1], &right = nodes[left.next];
-    node.bounds = left.bounds;
-    node.bounds.Add(right.bounds);
+    node.box = left.box;
+    node.box.Add(right.box);
     node.obstaclesOnly = left.obstaclesOnly && right.obstaclesOnly;
   }
 
@@ -252,18 +286,16 @@ struct IntersectionJudge::Impl {
       Build(nodes[at + 1].next);
       return Gather(at);
     }
-    node.bounds = {};
+    node.box = {};
     node.obstaclesOnly = true;
     for (std::size_t i = LeafBegin(node.firstLeaf); i < LeafBegin(node.endLeaf); ++i) {
-      const std::int32_t t = placed[i].triangle;
-      placedBounds[i] = bounds[Z(t)];
-      node.bounds.Add(bounds[Z(t)]);
-      node.obstaclesOnly = node.obstaclesOnly && IsObstacle(corners[Z(t)][0]);
+      node.box.Add(placed[i].box);
+      node.obstaclesOnly = node.obstaclesOnly && IsObstacle(corners[Z(placed[i].triangle)][0]);
     }
   }
 
   void BuildTree(const Executor& executor) {
-    nodes[0] = {{}, nodes.size(), 0, Leaves(), false};
+    nodes[0] = {{}, static_cast<std::uint32_t>(nodes.size()), 0, static_cast<std::uint32_t>(Leaves()), false};
     std::vector<std::size_t> above, parts = {0};
     for (int level = 0; level < kCommonLevels; ++level) {
       executor.ForChunks(static_cast<int>(parts.size()), [&](int part) {
@@ -290,20 +322,20 @@ struct IntersectionJudge::Impl {
     const bool shared = isCorner(edge.a);
     if (!shared && !isCorner(edge.b)) {
       if (IsObstacle(edge.a) && IsObstacle(c[0])) return false;
-      return SegmentMeetsTriangle(x[Z(edge.a)], x[Z(edge.b)], x[Z(c[0])], x[Z(c[1])], x[Z(c[2])]);
+      return SegmentMeetsTriangle(At(edge.a), At(edge.b), At(c[0]), At(c[1]), At(c[2]));
     }
     if (shared && isCorner(edge.b)) return false;
     if (IsObstacle(edge.a)) return false;
     const std::int32_t from = shared ? edge.a : edge.b, to = shared ? edge.b : edge.a;
     const std::size_t k = c[0] == from ? 0 : c[1] == from ? 1 : 2;
-    return SegmentRunsOnTriangle(x[Z(to)], x[Z(c[k])], x[Z(c[(k + 1) % 3])], x[Z(c[(k + 2) % 3])]);
+    return SegmentRunsOnTriangle(At(to), At(c[k]), At(c[(k + 1) % 3]), At(c[(k + 2) % 3]));
   }
 
   /// Asks about the edges that the triangles of a leaf stand for.
   void Query(std::size_t leaf, std::size_t most, Found& out) const {
     std::array<OwnEdge, 3 * kLeafTriangles> edges;
     std::size_t count = 0;
-    Bounds all;
+    Box all;
     bool obstaclesOnly = true;
     for (std::size_t i = LeafBegin(leaf); i < LeafBegin(leaf + 1); ++i) {
       const std::size_t t = Z(placed[i].triangle);
@@ -311,27 +343,29 @@ struct IntersectionJudge::Impl {
         if ((ownsSide[t] >> k & 1) == 0) continue;
         const std::int32_t from = corners[t][k], to = corners[t][(k + 1) % 3];
         OwnEdge& edge = edges[count++] = {std::min(from, to), std::max(from, to), {}};
-        edge.bounds.Add(seen[Z(from)]);
-        edge.bounds.Add(seen[Z(to)]);
-        all.Add(edge.bounds);
+        Bounds bounds;
+        bounds.Add(seen[Z(from)]);
+        bounds.Add(seen[Z(to)]);
+        edge.box = Round(bounds);
+        all.Add(edge.box);
         obstaclesOnly = obstaclesOnly && IsObstacle(from);
       }
     }
     for (std::size_t at = 0; at < nodes.size();) {
       const Node& node = nodes[at];
-      if (!node.bounds.Meets(all) || (obstaclesOnly && node.obstaclesOnly)) {
+      if (!node.box.Meets(all) || (obstaclesOnly && node.obstaclesOnly)) {
         at = node.next;
         continue;
       }
       ++at;
       if (node.endLeaf - node.firstLeaf > 1) continue;
       for (std::size_t e = 0; e < count; ++e) {
-        if (!edges[e].bounds.Meets(node.bounds)) continue;
+        if (!edges[e].box.Meets(node.box)) continue;
         std::array<std::size_t, kLeafTriangles> near;  // gathered first: a branch on each would be mispredicted
         std::size_t nearCount = 0;
         for (std::size_t i = LeafBegin(node.firstLeaf); i < LeafBegin(node.endLeaf); ++i) {
           near[nearCount] = i;
-          nearCount += edges[e].bounds.Meets(placedBounds[i]) ? 1 : 0;
+          nearCount += edges[e].box.Meets(placed[i].box) ? 1 : 0;
         }
         for (std::size_t k = 0; k < nearCount; ++k) {
           const std::int32_t t = placed[near[k]].triangle;
@@ -352,9 +386,10 @@ IntersectionJudge& IntersectionJudge::operator=(IntersectionJudge&&) noexcept = 
 
 IntersectionCount IntersectionJudge::Count(std::span<const Vec3> positions, const Executor& executor, int most) {
   Impl& impl = *impl_;
-  assert(positions.size() == impl.x.size() && most >= 0);
+  assert(positions.size() == impl.seen.size() && most >= 0);
   if (impl.corners.empty()) return {};
-  impl.TakePositions(positions, executor);
+  impl.positions = positions;
+  impl.TakePositions(executor);
   impl.BuildTree(executor);
   const auto kept = static_cast<std::size_t>(most);
   executor.ForChunks(static_cast<int>(impl.found.size()), [&](int chunk) {
@@ -365,7 +400,7 @@ IntersectionCount IntersectionJudge::Count(std::span<const Vec3> positions, cons
       impl.Query(leaf, kept, found);
   });
   Found all;
-  for (const Found& found : impl.found) all.Add(found);
+  for (Found& found : impl.found) all.Add(std::exchange(found, {}));
   all.Shorten(kept);
   return {all.count, std::move(all.first)};
 }

@@ -42,22 +42,41 @@ inline void StoreShapes(const Floats8* shapes, int blocks, float (*to)[3][kLanes
   }
 }
 
+/// Twice the shapes of a leaf's triangles. Returns how many.
+inline int DoubleShapes(const LeafShapeArgs& a, int leaf, Floats8* x, Floats8* y) {
+  const int begin = a.triangleFirst[leaf], count = a.triangleFirst[leaf + 1] - begin;
+  const auto twiceMiddle = [&](int v) { return Floats8::Load(a.rows[v].low[0]) + Floats8::Load(a.rows[v].high[0]); };
+  for (int t = 0; t < count; ++t) {
+    const std::int32_t* corners = a.corners + 3 * (begin + t);
+    const float* inverse = a.inverse + 4 * (begin + t);
+    const Floats8 p = twiceMiddle(corners[0]), ab = twiceMiddle(corners[1]) - p, ac = twiceMiddle(corners[2]) - p;
+    x[t] = ab * Floats8(inverse[0]) + ac * Floats8(inverse[2]);
+    y[t] = ab * Floats8(inverse[1]) + ac * Floats8(inverse[3]);
+  }
+  return count;
+}
+
+void ShapeTriangles(const LeafShapeArgs& a, int leaf, TriangleShapes& to) {
+  Floats8 x[kMostTriangles], y[kMostTriangles];
+  const int count = DoubleShapes(a, leaf, x, y), blocks = (count + kLanes - 1) / kLanes;
+  for (int t = count; t < blocks * kLanes; ++t) {
+    x[t] = x[0];
+    y[t] = y[0];
+  }
+  StoreShapes(x, blocks, to.x);
+  StoreShapes(y, blocks, to.y);
+  to.blocks = 2 * blocks;
+}
+
 void LeafShapes(const LeafShapeArgs& a) {
   for (int leaf = a.begin; leaf < a.end; ++leaf) {
     if (a.greatestSlope[leaf] < 0) continue;
-    const int begin = a.triangleFirst[leaf], count = a.triangleFirst[leaf + 1] - begin;
-    const auto twiceMiddle = [&](int v) { return Floats8::Load(a.rows[v].low[0]) + Floats8::Load(a.rows[v].high[0]); };
     Floats8 x[kMostTriangles], y[kMostTriangles], sumX, sumY;
+    const int count = DoubleShapes(a, leaf, x, y);
     for (int t = 0; t < count; ++t) {
-      const std::int32_t* corners = a.corners + 3 * (begin + t);
-      const float* inverse = a.inverse + 4 * (begin + t);
-      const Floats8 p = twiceMiddle(corners[0]), ab = twiceMiddle(corners[1]) - p, ac = twiceMiddle(corners[2]) - p;
-      x[t] = ab * Floats8(inverse[0]) + ac * Floats8(inverse[2]);
-      y[t] = ab * Floats8(inverse[1]) + ac * Floats8(inverse[3]);
       sumX += x[t];
       sumY += y[t];
     }
-    // All are twice too large so far.
     LeafShape& shape = a.shapes[leaf];
     float meanX[8], meanY[8], size = 0;
     const float share = 0.25f / static_cast<float>(count);
@@ -80,14 +99,6 @@ void LeafShapes(const LeafShapeArgs& a) {
     }
     shape.error = a.greatestSlope[leaf] * GreatestError(a, leaf) + size * kShapeError;
     shape.deviation = Sqrt(Floats(greatest))[0] / 2 + shape.error;
-    const int blocks = (count + kLanes - 1) / kLanes;
-    for (int t = count; t < blocks * kLanes; ++t) {
-      x[t] = x[0];
-      y[t] = y[0];
-    }
-    StoreShapes(x, blocks, a.triangleShapes[leaf].x);
-    StoreShapes(y, blocks, a.triangleShapes[leaf].y);
-    a.triangleShapes[leaf].blocks = 2 * blocks;
   }
 }
 

@@ -73,10 +73,9 @@ struct LeafShapeArgs {
   const float* inverse;        ///< As FlatRegions has it.
   const float* greatestSlope;  ///< As FlatRegions has it; leaves that have none are left out.
   const BoxRow* rows;
-  const BoxBlock* boxes;           ///< Of leaves.
-  bool haveCuts;                   ///< Whether any vertex may be cut.
-  LeafShape* shapes;               ///< Out.
-  TriangleShapes* triangleShapes;  ///< Out.
+  const BoxBlock* boxes;  ///< Of leaves.
+  bool haveCuts;          ///< Whether any vertex may be cut.
+  LeafShape* shapes;      ///< Out.
 };
 
 /// Items of one kind.
@@ -150,6 +149,8 @@ struct Kernels {
   /// Writes the box of each block of `boxes` to its lane of `parents`.
   void (*parentBoxes)(const BoxBlock* boxes, int blocks, BoxBlock* parents);
   void (*leafShapes)(const LeafShapeArgs&);
+  /// Writes those of the triangles of one leaf, which must not be left out.
+  void (*triangleShapes)(const LeafShapeArgs&, int leaf, TriangleShapes& to);
   /// Whether (Gᵀ F + Fᵀ G) / 2 > least for the shapes F of all triangles, where G is x, y.
   bool (*areMonotone)(const TriangleShapes& triangles, const float x[3], const float y[3], float least);
   void (*itemBoxes)(const ItemBoxArgs&);

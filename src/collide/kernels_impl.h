@@ -36,6 +36,7 @@ const Kernels kKernels = {
     .leafBoxes = LeafBoxes,
     .parentBoxes = ParentBoxes,
     .leafShapes = LeafShapes,
+    .triangleShapes = ShapeTriangles,
     .areMonotone = AreMonotone,
     .itemBoxes = ItemBoxes,
     .search = Search,

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,8 @@ namespace {
 constexpr int kChunkVertices = 1024;  // that one thread takes at a time
 constexpr int kLeastChunkBlocks = 2;  // of leaves, likewise
 constexpr int kMostChunks = 512;
+constexpr int kChunksAtOnce = 64;     // whose items have boxes at the same time
+constexpr int kBoxedLeaves = 64;      // that one thread takes at a time
 constexpr std::size_t kSamples = 63;  // for a median
 
 static_assert(NearItems::kMostEdges == 3 * Clusters::kLeafItems * 3 * Clusters::kLeafItems);
@@ -35,6 +38,28 @@ std::size_t Index(std::int64_t i) {
 int Blocks(std::int64_t count) {
   return static_cast<int>((count + kLanes - 1) / kLanes);
 }
+
+/// Shapes of the triangles of leaves, made when they are asked for. Those of a few leaves stay: pairs are searched for
+/// along the mesh, so that what is asked for again is asked for soon.
+class TriangleShapesOf {
+ public:
+  TriangleShapesOf(const Kernels& kernels, const LeafShapeArgs& args) : kernels_(kernels), args_(args) {
+    leaf_.fill(-1);
+  }
+  const TriangleShapes& operator()(std::int32_t leaf) {
+    const std::size_t place = Index(leaf) % kPlaces;
+    if (std::exchange(leaf_[place], leaf) != leaf) kernels_.triangleShapes(args_, leaf, shapes_[place]);
+    return shapes_[place];
+  }
+
+ private:
+  static constexpr std::size_t kPlaces = 32;  // 25 kB, on the stack
+
+  const Kernels& kernels_;
+  const LeafShapeArgs& args_;
+  std::array<std::int32_t, kPlaces> leaf_;  // -1: none
+  std::array<TriangleShapes, kPlaces> shapes_;
+};
 
 using Write = int (*)(const WriteArgs&);
 
@@ -118,9 +143,12 @@ struct PairFinder::Impl {
 
   void BoxVertices(const MeshMotion& motion, std::span<const double> reach);
   void BoxLeaves();
+  LeafShapeArgs ShapeArgs(int begin, int end, bool haveCuts);
   void ShapeLeaves(std::span<const double> reach, bool haveCuts);
-  void SearchLeaves(std::span<const double> reach, bool clothPairs);
+  void SearchLeaves(std::span<const double> reach, bool clothPairs, bool haveCuts);
+  void TouchLeaves(int firstChunk, int endChunk);
   void BoxItems();
+  void CompareItems(int firstChunk, int endChunk);
   void CompareItems();
 
   /// Calls body(begin, end, chunk) for all blocks of leaves.
@@ -148,11 +176,11 @@ struct PairFinder::Impl {
   AlignedVector<BoxRow> rows;                   // per vertex
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
-  std::vector<LeafShape> shapes;                 // per leaf
-  AlignedVector<TriangleShapes> triangleShapes;  // per leaf
-  std::vector<std::uint8_t> areAllApart;         // per leaf, as FlatRegions has it
-  AlignedVector<BoxBlock> itemBoxes;             // of leaves that are touched: they take more memory than all else
-  std::vector<std::uint8_t> isTouched;           // per leaf: may have pairs
+  std::vector<LeafShape> shapes;          // per leaf
+  std::vector<std::uint8_t> areAllApart;  // per leaf, as FlatRegions has it
+  AlignedVector<BoxBlock> itemBoxes;      // of the leaves that are touched
+  std::vector<std::int32_t> touched;      // leaves that pairs of some chunks have
+  std::vector<std::uint8_t> isTouched;    // per leaf: whether it is one of them
   ChunkLists<LeafPair> leafPairs;
   ChunkLists<VertexQuad> vertexTriangleLists, edgeEdgeLists;
   Pairs vertexTriangle, edgeEdge;
@@ -170,7 +198,6 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       firstItemBlock(Index(clusters.leaves())),
       rows(m.body.size()),
       shapes(Index(clusters.clothLeaves)),
-      triangleShapes(Index(clusters.clothLeaves)),
       areAllApart(Index(clusters.clothLeaves)),
       isTouched(Index(clusters.leaves())),
       leafPairs(chunks),
@@ -222,21 +249,24 @@ void PairFinder::Impl::BoxLeaves() {
   }
 }
 
+LeafShapeArgs PairFinder::Impl::ShapeArgs(int begin, int end, bool haveCuts) {
+  return {.begin = begin,
+          .end = end,
+          .triangleFirst = clusters.triangleFirst.data(),
+          .corners = Corners(std::span<const Triangle>(clusters.triangles)),
+          .vertexFirst = clusters.vertexFirst.data(),
+          .vertices = clusters.vertices.data(),
+          .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
+          .greatestSlope = regions.greatestSlope.data(),
+          .rows = rows.data(),
+          .boxes = levels[0].data(),
+          .haveCuts = haveCuts,
+          .shapes = shapes.data()};
+}
+
 void PairFinder::Impl::ShapeLeaves(std::span<const double> reach, bool haveCuts) {
   ForBlocks([&](int begin, int end, int) {
-    kernels.leafShapes({.begin = begin * kLanes,
-                        .end = std::min(end * kLanes, clusters.clothLeaves),
-                        .triangleFirst = clusters.triangleFirst.data(),
-                        .corners = Corners(std::span<const Triangle>(clusters.triangles)),
-                        .vertexFirst = clusters.vertexFirst.data(),
-                        .vertices = clusters.vertices.data(),
-                        .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
-                        .greatestSlope = regions.greatestSlope.data(),
-                        .rows = rows.data(),
-                        .boxes = levels[0].data(),
-                        .haveCuts = haveCuts,
-                        .shapes = shapes.data(),
-                        .triangleShapes = triangleShapes.data()});
+    kernels.leafShapes(ShapeArgs(begin * kLanes, std::min(end * kLanes, clusters.clothLeaves), haveCuts));
   });
   ForBlocks([&](int begin, int end, int) {
     for (int leaf = begin * kLanes; leaf < std::min(end * kLanes, clusters.clothLeaves); ++leaf) {
@@ -245,15 +275,18 @@ void PairFinder::Impl::ShapeLeaves(std::span<const double> reach, bool haveCuts)
   });
 }
 
-void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPairs) {
+void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPairs, bool haveCuts) {
   leafPairs.Clear();
+  const LeafShapeArgs shapeArgs = ShapeArgs(0, clusters.clothLeaves, haveCuts);
   ForBlocks([&](int begin, int end, int chunk) {
+    TriangleShapesOf triangleShapes(kernels, shapeArgs);
+    const auto trianglesOf = std::ref(triangleShapes);
     const auto put = [&](const LeafPair* pairs, int count) {
       for (int i = 0; i < count; ++i) {
         const auto [a, b] = pairs[i];
         const std::int32_t pair = regions.Find(a, b);
         if (pair >= 0 && (areAllApart[Index(a)] != 0 ||
-                          regions.AreApart(pair, a, b, shapes, triangleShapes, kernels, Distance(reach, a)))) {
+                          regions.AreApart(pair, a, b, shapes, trianglesOf, kernels, Distance(reach, a)))) {
           continue;
         }
         leafPairs.Room(chunk)[0] = pairs[i];
@@ -271,15 +304,22 @@ void PairFinder::Impl::SearchLeaves(std::span<const double> reach, bool clothPai
                     .context = const_cast<void*>(static_cast<const void*>(&put))});
   });
   leafPairs.KeepRoom();
-  std::fill(isTouched.begin(), isTouched.end(), std::uint8_t{0});
-  for (int chunk = 0; chunk < chunks; ++chunk) {
+}
+
+/// Takes the leaves that the pairs of these chunks have, and makes room for the boxes of their items.
+void PairFinder::Impl::TouchLeaves(int firstChunk, int endChunk) {
+  for (const std::int32_t leaf : touched) isTouched[Index(leaf)] = 0;
+  touched.clear();
+  const auto touch = [&](std::int32_t leaf) {
+    if (std::exchange(isTouched[Index(leaf)], std::uint8_t{1}) == 0) touched.push_back(leaf);
+  };
+  for (int chunk = firstChunk; chunk < endChunk; ++chunk) {
     leafPairs.ForEntries(chunk, [&](std::span<const LeafPair> pairs) {
-      for (const LeafPair& pair : pairs) isTouched[Index(pair.a)] = isTouched[Index(pair.b)] = 1;
+      for (const LeafPair& pair : pairs) touch(pair.a), touch(pair.b);
     });
   }
   std::int32_t blocks = 0;
-  for (int leaf = 0; leaf < clusters.leaves(); ++leaf) {
-    if (isTouched[Index(leaf)] == 0) continue;
+  for (const std::int32_t leaf : touched) {
     const auto count = [](const auto& items) { return Blocks(static_cast<std::int64_t>(items.size())); };
     firstItemBlock[Index(leaf)] = blocks;
     blocks += count(clusters.Edges(leaf)) + count(clusters.OwnVertices(leaf)) + count(clusters.Triangles(leaf));
@@ -301,16 +341,17 @@ LeafItems PairFinder::Impl::ItemsOf(int leaf) const {
 }
 
 void PairFinder::Impl::BoxItems() {
-  ForBlocks([&](int begin, int end, int) {
-    for (int leaf = begin * kLanes; leaf < std::min(end * kLanes, clusters.leaves()); ++leaf) {
-      if (isTouched[Index(leaf)] == 0) continue;
+  const int count = static_cast<int>(touched.size());
+  executor.ForChunks((count + kBoxedLeaves - 1) / kBoxedLeaves, [&](int chunk) {
+    for (int i = chunk * kBoxedLeaves; i < std::min((chunk + 1) * kBoxedLeaves, count); ++i) {
+      const std::int32_t leaf = touched[Index(i)];
       BoxBlock* to = itemBoxes.data() + firstItemBlock[Index(leaf)];
-      const auto box = [&](const std::int32_t* corners, int cornersPerItem, std::size_t items) {
-        const int count = static_cast<int>(items);
-        if (count == 0) return;
-        for (auto& extents : to[Blocks(count) - 1].extent) std::fill_n(extents, kLanes, -INFINITY);
-        kernels.itemBoxes({corners, cornersPerItem, count, rows.data(), to});
-        to += Blocks(count);
+      const auto box = [&](const std::int32_t* corners, int cornersPerItem, std::size_t number) {
+        const int items = static_cast<int>(number);
+        if (items == 0) return;
+        for (auto& extents : to[Blocks(items) - 1].extent) std::fill_n(extents, kLanes, -INFINITY);
+        kernels.itemBoxes({corners, cornersPerItem, items, rows.data(), to});
+        to += Blocks(items);
       };
       box(Corners(clusters.Edges(leaf)), 2, clusters.Edges(leaf).size());
       box(Corners(clusters.Triangles(leaf)), 3, clusters.Triangles(leaf).size());
@@ -319,11 +360,10 @@ void PairFinder::Impl::BoxItems() {
   });
 }
 
-void PairFinder::Impl::CompareItems() {
+void PairFinder::Impl::CompareItems(int firstChunk, int endChunk) {
   const bool isSerial = executor.threads() == 1;
-  vertexTriangleLists.Clear();
-  edgeEdgeLists.Clear();
-  executor.ForChunks(chunks, [&](int chunk) {
+  executor.ForChunks(endChunk - firstChunk, [&](int index) {
+    const int chunk = firstChunk + index;
     const auto add = [&](Pairs& pairs, ChunkLists<VertexQuad>& lists, Write write, const WriteArgs& args) {
       if (isSerial) {
         pairs.Add(write, args);
@@ -348,7 +388,18 @@ void PairFinder::Impl::CompareItems() {
       for (const LeafPair& pair : pairs) compare(pair);
     });
   });
-  if (isSerial) {
+}
+
+void PairFinder::Impl::CompareItems() {
+  vertexTriangleLists.Clear();
+  edgeEdgeLists.Clear();
+  for (int chunk = 0; chunk < chunks; chunk += kChunksAtOnce) {
+    const int end = std::min(chunks, chunk + kChunksAtOnce);
+    TouchLeaves(chunk, end);
+    BoxItems();
+    CompareItems(chunk, end);
+  }
+  if (executor.threads() == 1) {
     vertexTriangle.KeepRoom();
     edgeEdge.KeepRoom();
   } else {
@@ -375,8 +426,7 @@ void PairFinder::Find(const MeshMotion& motion, std::span<const double> reach, b
   s.BoxVertices(motion, reach);
   s.BoxLeaves();
   if (clothPairs) s.ShapeLeaves(reach, !motion.cut.empty());
-  s.SearchLeaves(reach, clothPairs);
-  s.BoxItems();
+  s.SearchLeaves(reach, clothPairs, !motion.cut.empty());
   s.CompareItems();
 }
 
@@ -391,8 +441,8 @@ std::span<const VertexQuad> PairFinder::edgeEdge() const {
 std::size_t PairFinder::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   const Impl& s = *impl_;
-  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.triangleShapes) +
-                    bytes(s.areAllApart) + bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) +
+  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.areAllApart) +
+                    bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.touched) +
                     bytes(s.isTouched) + s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() +
                     s.edgeEdgeLists.MemoryBytes() + s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
   for (const auto& level : s.levels) sum += bytes(level);

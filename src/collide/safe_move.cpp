@@ -71,8 +71,8 @@ void SafeMove::ForPairs(Body&& body) {
 }
 
 /// All pairs that might meet, and how they are at the start.
-void SafeMove::Search(const Ways& ways, const ContactDistances& distances) {
-  finder_.Find({.start = ways.start, .way = gone_, .cut = cut_}, distances.half, distances.clothPairs);
+void SafeMove::Search(const Ways& ways, std::span<const Vec3> gone, const ContactDistances& distances) {
+  finder_.Find({.start = ways.start, .way = gone, .cut = cut_}, distances.half, distances.clothPairs);
   for (std::size_t kind = 0; kind < 2; ++kind) {
     NearPairs& pairs = pairs_[kind];
     pairs.vertex = kind == 0 ? finder_.vertexTriangle() : finder_.edgeEdge();
@@ -134,23 +134,25 @@ std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
   return failed;
 }
 
-/// Lets all go only so far that their ways, each anywhere along its own, do not come near everything.
-void SafeMove::LimitWays(const Ways& ways, const ContactDistances& distances) {
+/// Lets all go only so far that their ways, each anywhere along its own, do not come near everything. False: they
+/// do not anyway.
+bool SafeMove::LimitWays(const Ways& ways, const ContactDistances& distances) {
   double longest = 0, distance = 0;
   for (std::size_t v = 0; v < ways.way.size(); ++v) longest = std::max(longest, Length(ways.way[v]) * ways.share[v]);
   for (const double half : distances.half) distance = std::max(distance, 2 * half);
   const double most = kLongest * distance;
-  if (longest <= most) return;
+  if (longest <= most) return false;
+  limited_.resize(ways.way.size());
   for (std::size_t v = 0; v < ways.way.size(); ++v) {
     ways.share[v] *= most / longest;
-    gone_[v] = ways.way[v] * ways.share[v];
+    limited_[v] = ways.way[v] * ways.share[v];
   }
+  return true;
 }
 
 void SafeMove::List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances) {
   std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
-  gone_.assign(way.begin(), way.end());
-  Search({start, way, {}}, distances);
+  Search({start, way, {}}, way, distances);
 }
 
 SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances,
@@ -159,8 +161,8 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
   const Ways ways{start, way, share};
   std::fill(share.begin(), share.end(), 1.0);
   std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
-  gone_.assign(way.begin(), way.end());
-  Search(ways, distances);
+  std::span<const Vec3> gone = way;
+  Search(ways, gone, distances);
   ++report.detections;
   for (int sweep = 0; Cut(ways, sweep) > 0; ++sweep) {
     // Whoever is cut may meet what was not listed.
@@ -177,9 +179,9 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
     }
     if (report.detections + 1 >= kMostSearches) {
       std::fill(cut_.begin(), cut_.end(), std::uint8_t{1});
-      LimitWays(ways, distances);
+      if (LimitWays(ways, distances)) gone = limited_;
     }
-    Search(ways, distances);
+    Search(ways, gone, distances);
     ++report.detections;
   }
   for (std::size_t v = 0; v < share.size(); ++v) {

@@ -73,10 +73,11 @@ class SafeMove {
     std::span<double> share;
   };
 
-  void Search(const Ways& ways, const ContactDistances& distances);
+  /// Where all may go as far as `gone`.
+  void Search(const Ways& ways, std::span<const Vec3> gone, const ContactDistances& distances);
   template <class Body>
   void ForPairs(Body&& body);
-  void LimitWays(const Ways& ways, const ContactDistances& distances);
+  bool LimitWays(const Ways& ways, const ContactDistances& distances);
   std::int64_t Cut(const Ways& ways, int sweep);
 
   const ContactMesh& mesh_;
@@ -85,7 +86,7 @@ class SafeMove {
   const Untangler* untangler_ = nullptr;
   NearPairs pairs_[2];                              // by kind
   std::vector<double> shares_[2];                   // per pair, of the last test
-  std::vector<Vec3> gone_;                          // per vertex: the way that it may go
+  std::vector<Vec3> limited_;                       // per vertex: the way that it may go; none before LimitWays
   std::vector<double> least_;                       // per vertex: of the pairs that fail in a sweep
   std::vector<std::uint8_t> cut_, changed_, next_;  // per vertex
 };

@@ -35,32 +35,30 @@ double Dot(const Real* __restrict a, const Real* __restrict b, int rows, std::ve
 }  // namespace
 
 void ConjugateGradient::SetUp(int rows) {
-  for (RealVector* vector : {&residual_, &preconditioned_, &direction_, &product_}) {
+  for (RealVector* vector : {&preconditioned_, &direction_, &product_}) {
     vector->assign(VectorLength(rows), 0);
   }
   chunkSums_.assign(Chunks(rows), 0);
 }
 
-SolveResult ConjugateGradient::Solve(const SystemMatrix& matrix, Multigrid& multigrid, const Real* b, Real* x,
+SolveResult ConjugateGradient::Solve(const SystemMatrix& matrix, Multigrid& multigrid, Real* b, Real* x,
                                      const SolveSettings& settings, const Executor& executor) {
   const int rows = matrix.rows();
-  Real* __restrict r = residual_.data();
+  Real* __restrict r = b;
   Real* __restrict z = preconditioned_.data();
   Real* __restrict p = direction_.data();
   const Real* __restrict hp = product_.data();
   Real* __restrict answer = x;
 
-  ForNumbers(rows, executor, [&](std::size_t begin, std::size_t end) {
-    std::copy(b + begin, b + end, r + begin);
-    std::fill(answer + begin, answer + end, Real{0});
-  });
-  multigrid.Apply(matrix, r, z, executor);
+  ForNumbers(rows, executor,
+             [&](std::size_t begin, std::size_t end) { std::fill(answer + begin, answer + end, Real{0}); });
+  multigrid.Apply(matrix, r, z, product_.data(), executor);
   double rz = Dot(r, z, rows, chunkSums_, executor);
   const double start = rz;
   SolveResult result;
   if (!(start > 0)) {
     if (Dot(r, r, rows, chunkSums_, executor) == 0) return result;
-    matrix.SmoothFromZero(1, b, x, executor);
+    matrix.SmoothFromZero(1, r, x, executor);
     result.ratio = 1;
     result.end = SolveEnd::NotPreconditioned;
     return result;
@@ -91,7 +89,7 @@ SolveResult ConjugateGradient::Solve(const SystemMatrix& matrix, Multigrid& mult
       result.end = SolveEnd::Converged;
       break;
     }
-    multigrid.Apply(matrix, r, z, executor);
+    multigrid.Apply(matrix, r, z, product_.data(), executor);
     const double before = rz;
     rz = Dot(r, z, rows, chunkSums_, executor);
     result.ratio = rz / start;
@@ -112,7 +110,7 @@ SolveResult ConjugateGradient::Solve(const SystemMatrix& matrix, Multigrid& mult
 }
 
 std::size_t ConjugateGradient::MemoryBytes() const {
-  return 4 * residual_.capacity() * sizeof(Real) + chunkSums_.capacity() * sizeof(double);
+  return 3 * product_.capacity() * sizeof(Real) + chunkSums_.capacity() * sizeof(double);
 }
 
 }  // namespace percale::fabric

@@ -28,13 +28,13 @@ void PlaceCloth(const FabricModel& model, int cloth, std::vector<Vec3>& place) {
   const int firstVertex = model.firstVertex[Index(cloth)], endVertex = model.firstVertex[Index(cloth) + 1];
   std::vector<Vec2> flat(Index(endVertex - firstVertex));
   std::vector<std::uint8_t> known(flat.size(), 0);
-  bool one = !model.material.empty();
+  bool one = !model.chart.empty();
   for (int t = model.firstTriangle[Index(cloth)]; one && t < model.firstTriangle[Index(cloth) + 1]; ++t) {
     const Triangle& triangle = model.triangles[Index(t)];
     const std::int32_t corner[3] = {triangle.a, triangle.b, triangle.c};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t v = Index(corner[k] - firstVertex);
-      const Vec2& at = model.material[3 * Index(t) + k];
+      const Vec2& at = model.Material(Index(t), static_cast<int>(k));
       if (!known[v]) flat[v] = at;
       known[v] = 1;
       one = one && flat[v] == at;
@@ -82,13 +82,10 @@ ContactStep::ContactStep(const Scene& scene, const FabricModel& model, const Exe
       obstacles_(scene),
       mesh_(MakeContactMesh(model, obstacles_)),
       safeMove_(mesh_, executor),
-      contacts_(mesh_, executor),
-      judge_(mesh_.vertices(), mesh_.triangles, mesh_.clothVertices),
-      untangler_(mesh_) {
+      contacts_(mesh_, executor) {
   const std::size_t count = Index(mesh_.vertices());
-  for (std::vector<Vec3>* vectors : {&begin_, &start_, &way_}) vectors->resize(count);
+  for (std::vector<Vec3>* vectors : {&start_, &way_}) vectors->resize(count);
   share_.resize(count);
-  meetings_.resize(Index(mesh_.clothVertices));
   for (std::vector<Vec3>* vectors : {&obstacleBefore_, &obstacle_, &obstacleTarget_})
     vectors->resize(Index(obstacles_.vertices()));
   Configure(scene);
@@ -127,7 +124,7 @@ void ContactStep::Restart(const Scene& scene, double time) {
   for (const PlacedSolid& solid : placed_) solids_.push_back({solid, solid});
   obstacles_.PlaceAt(scene, time, obstacle_);
   obstacleBefore_ = obstacleTarget_ = obstacle_;
-  untangler_.Take({});
+  Disentangle();
   judged_ = listed_ = false;
   time_ = time;
 }
@@ -184,15 +181,14 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
                              std::span<const std::uint8_t> free, double h, bool firm) {
   const std::size_t cloth = now.size();
   for (std::size_t v = 0; v < cloth; ++v) {
-    begin_[v] = begin[v];
     start_[v] = now[v];
     way_[v] = ahead[v] - now[v];
   }
   for (std::size_t v = 0; v < obstacle_.size(); ++v) {
-    begin_[cloth + v] = start_[cloth + v] = obstacle_[v];
+    start_[cloth + v] = obstacle_[v];
     way_[cloth + v] = obstacleTarget_[v] - obstacle_[v];
   }
-  contacts_.Begin({.begin = begin_,
+  contacts_.Begin({.begin = begin,
                    .start = start_,
                    .way = way_,
                    .free = free,
@@ -202,11 +198,13 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
                    .surfaces = surfaces_});
   contacts_.AddPairs(PairKind::VertexTriangle, safeMove_.vertexTriangle());
   contacts_.AddPairs(PairKind::EdgeEdge, safeMove_.edgeEdge());
-  untangler_.Find(start_, free, tangles_);
+  tangles_.clear();
+  if (untangler_) untangler_->Find(start_, free, tangles_);
   contacts_.AddTangles(tangles_, distances_);
   for (std::size_t s = 0; s < solids_.size(); ++s) {
     const ContactSurface surface{.friction = solids_[s].end.friction, .rulesFriction = true};
     const auto distanceOf = [&](std::size_t v) { return 2 * distances_.half[Index(mesh_.body[v])]; };
+    meetings_.resize(cloth);  // before the first solid there are none
     ForRange(executor_, cloth, [&](int vertex) {
       const std::size_t v = Index(vertex);
       meetings_[v].any = false;
@@ -285,17 +283,32 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
   std::copy(cloth.begin(), cloth.end(), start_.begin());
   std::copy(obstacle_.begin(), obstacle_.end(), start_.begin() + static_cast<std::ptrdiff_t>(cloth.size()));
   std::vector<Intersection> met;
-  if (distances_.clothPairs || !obstacle_.empty()) met = judge_.Count(start_, executor_, kMostTangled).first;
+  if (distances_.clothPairs || !obstacle_.empty()) {
+    if (!judge_) judge_.emplace(mesh_.vertices(), mesh_.triangles, mesh_.clothVertices);
+    met = judge_->Count(start_, executor_, kMostTangled).first;
+  }
   JudgeLoneEdges(met);
   if (!distances_.clothPairs) {
     std::erase_if(met, [&](const Intersection& one) {
       return std::max(one.edge[1], mesh_.triangles[Index(one.triangle)].a) < mesh_.clothVertices;
     });
   }
-  untangler_.Take(std::move(met));
-  safeMove_.Exempt(&untangler_);
+  if (met.empty()) {
+    Disentangle();
+  } else {
+    if (!untangler_) untangler_.emplace(mesh_);
+    untangler_->Take(std::move(met));
+    safeMove_.Exempt(&*untangler_);
+  }
   judged_ = true;
   listed_ = false;  // A list says which pairs are let be.
+}
+
+/// Nothing is tangled, so far as is known.
+void ContactStep::Disentangle() {
+  safeMove_.Exempt(nullptr);
+  judge_.reset();
+  untangler_.reset();
 }
 
 /// The edges of solids, of which the judge knows nothing, each against all triangles of cloth: they are few.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,7 +54,7 @@ class ContactStep {
   void MoveAside(std::span<const Vec3> now, std::span<Vec3> end);
   /// Pairs of an edge and a triangle that pass through each other, as was last looked: at a start, after a jump, and at
   /// the end of each step that began with some; of cloth that is apart none can become any.
-  std::int64_t tangled() const { return static_cast<std::int64_t>(untangler_.met().size()); }
+  std::int64_t tangled() const { return untangler_ ? static_cast<std::int64_t>(untangler_->met().size()) : 0; }
 
   /// How many vertices of cloth are inside of solids, and how many of obstacles wait for cloth to make way: what is
   /// squeezed gives way to colliders, and they to it, but never cloth to cloth.
@@ -72,6 +73,7 @@ class ContactStep {
 
  private:
   void Judge(std::span<const Vec3> cloth);
+  void Disentangle();
   void JudgeLoneEdges(std::vector<Intersection>& met);
 
   const FabricModel& model_;
@@ -87,13 +89,14 @@ class ContactStep {
   // Vertices of obstacles: a step ago, now, and where they are led.
   std::vector<Vec3> obstacleBefore_, obstacle_, obstacleTarget_;
   // Of the mesh, cloth and obstacles:
-  std::vector<Vec3> begin_, start_, way_;
+  std::vector<Vec3> start_, way_;
   std::vector<double> share_;
-  IntersectionJudge judge_;
-  Untangler untangler_;
+  // While something is tangled, or that is not known:
+  std::optional<IntersectionJudge> judge_;
+  std::optional<Untangler> untangler_;
   std::vector<Tangle> tangles_;
   bool judged_ = false;                 // Whether that is known.
-  std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid
+  std::vector<SolidMeeting> meetings_;  // per vertex of cloth, of one solid; none without solids
   // Where Rewind leads back to.
   struct {
     std::vector<SolidStep> solids;

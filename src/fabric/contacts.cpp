@@ -7,6 +7,8 @@ namespace percale::fabric {
 namespace {
 
 constexpr int kPairsPerChunk = 1024;
+/// Of so many pairs at a time the planes are found: they take 15 MB, and each thread of some has a few chunks.
+constexpr std::size_t kPairsAtOnce = 64 * kPairsPerChunk;
 /// A pull at what is tangled is as strong as so many contacts: of 80 heaps of sheets 4 stayed tangled for 200 frames
 /// with 1, and 1 with 10.
 constexpr double kPull = 4;
@@ -172,20 +174,26 @@ void Contacts::Remember(Contact& contact) {
 }
 
 void Contacts::AddPairs(PairKind kind, const NearPairs& pairs) {
-  const std::size_t count = pairs.size();
+  for (std::size_t first = 0; first < pairs.size(); first += kPairsAtOnce) {
+    AddPairs(kind, pairs, first, std::min(pairs.size(), first + kPairsAtOnce));
+  }
+}
+
+void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last) {
+  const std::size_t count = last - first;
   found_.resize(count);
   kept_.resize(count);
   states_.resize(count);
   executor_.ForChunks(static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk), [&](int chunk) {
     const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(count, begin + kPairsPerChunk);
-    StatesOf(kind, pairs.vertex.subspan(begin, end - begin), step_.start,
+    StatesOf(kind, pairs.vertex.subspan(first + begin, end - begin), step_.start,
              std::span(states_).subspan(begin, end - begin));
     for (std::size_t p = begin; p < end; ++p) {
-      const VertexQuad& vertex = pairs.vertex[p];
+      const VertexQuad& vertex = pairs.vertex[first + p];
       const PairState& now = states_[p];
-      const double distance = pairs.distance[p];
+      const double distance = pairs.distance[first + p];
       kept_[p] = 0;
-      if (!(now.gap > 0) || pairs.exempt[p]) continue;
+      if (!(now.gap > 0) || pairs.exempt[first + p]) continue;
       Corners<double> x, way;
       for (std::size_t k = 0; k < 4; ++k) {
         x[k] = From<double>(step_.start[Index(vertex[k])]);
@@ -213,7 +221,7 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs) {
         c.weight[k] = plane.weight[k];
         c.vertex[k] = v < mesh_.clothVertices ? v : -1;
         if (c.vertex[k] < 0) obstacle += (x[k] + way[k]) * plane.weight[k];
-        c.slideFrom += From<double>(step_.begin[Index(v)]) * plane.weight[k];
+        c.slideFrom += From<double>((c.vertex[k] < 0 ? step_.start : step_.begin)[Index(v)]) * plane.weight[k];
       }
       c.offset = Dot(c.normal, obstacle);
       c.slideFrom -= obstacle;

@@ -53,10 +53,9 @@ class Contacts {
   /// Both must outlive it.
   Contacts(const ContactMesh& mesh, const Executor& executor);
 
-  /// All spans but the last over the vertices of the mesh.
   struct Step {
-    std::span<const Vec3> begin;               ///< Where the step begins: what slides, slides from there [m].
-    std::span<const Vec3> start;               ///< Where all is now [m].
+    std::span<const Vec3> begin;               ///< Per vertex of cloth: where the step begins and it slides from [m].
+    std::span<const Vec3> start;               ///< Per vertex of the mesh: where it is now [m].
     std::span<const Vec3> way;                 ///< Of obstacles to the end of the step, of cloth where it is led [m].
     std::span<const std::uint8_t> free;        ///< Per vertex of cloth: 0 for pins.
     std::span<const double> mass;              ///< Per vertex of cloth [kg].
@@ -103,6 +102,7 @@ class Contacts {
   static void Fit(double k, Contact& contact);
   double FrictionOf(const ContactSurface& a, const ContactSurface& b) const;
   void Remember(Contact& contact);
+  void AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last);
 
   const ContactMesh& mesh_;
   const Executor& executor_;
@@ -110,7 +110,7 @@ class Contacts {
   std::vector<std::uint8_t> border_;     // per vertex: 1 at a border
   Step step_;
   std::vector<Contact> contacts_;
-  std::vector<std::uint8_t> kept_;  // per pair while they are added
+  std::vector<std::uint8_t> kept_;  // per pair while they are added, some at a time
   std::vector<Contact> found_;
   std::vector<PairState> states_;
   std::vector<ExtraTerm> terms_;

@@ -450,7 +450,7 @@ VertexRef FabricEngine::RefOf(int vertex) const {
 double FabricEngine::SquaredStretch(std::size_t t, std::span<const Vec3> y) const {
   const Triangle& triangle = model_.triangles[t];
   const auto x = [&](std::int32_t v) { return From<double>(y[Index(v)]); };
-  const DeformationGradient<double> f = Deformation(model_.rest[t], x(triangle.a), x(triangle.b), x(triangle.c));
+  const DeformationGradient<double> f = Deformation(model_.Rest(t), x(triangle.a), x(triangle.b), x(triangle.c));
   const double uu = Dot(f.u, f.u), vv = Dot(f.v, f.v), uv = Dot(f.u, f.v);
   return 0.5 * (uu + vv) + std::sqrt(0.25 * (uu - vv) * (uu - vv) + uv * uv);
 }

@@ -27,7 +27,7 @@ Vec2 AlongWarp(const Vec2& p, double angle) {
 }
 
 MaterialPoint Corner(const FabricModel& model, std::int64_t triangle, int corner) {
-  const Vec2& p = model.material[Index(3 * triangle + corner)];
+  const Vec2& p = model.Material(Index(triangle), corner);
   return {p.x, p.y};
 }
 
@@ -37,8 +37,8 @@ MaterialPoint CornerAt(const FabricModel& model, std::int32_t triangle, std::int
   return Corner(model, triangle, t.a == vertex ? 0 : t.b == vertex ? 1 : 2);
 }
 
-/// Appends a cloth's vertices and triangles.
-void Append(const RestMesh& mesh, double warpAngle, FabricModel& model) {
+/// Appends a cloth's vertices and triangles, and where these lie in the material.
+void Append(const RestMesh& mesh, double warpAngle, FabricModel& model, std::vector<Vec2>& material) {
   const int first = model.vertexCount;
   model.firstVertex.push_back(first);
   model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
@@ -47,13 +47,13 @@ void Append(const RestMesh& mesh, double warpAngle, FabricModel& model) {
   const std::size_t triangles = model.triangles.size() + mesh.triangles.size();
   model.triangles.reserve(triangles);
   model.clothOf.reserve(triangles);
-  model.material.reserve(3 * triangles);
+  material.reserve(3 * triangles);
   model.start.insert(model.start.end(), mesh.positions.begin(), mesh.positions.end());
   for (const Triangle& t : mesh.triangles) {
     model.triangles.push_back({t.a + first, t.b + first, t.c + first});
     model.clothOf.push_back(cloth);
   }
-  for (const Vec2& p : mesh.material) model.material.push_back(AlongWarp(p, warpAngle));
+  for (const Vec2& p : mesh.material) material.push_back(AlongWarp(p, warpAngle));
 }
 
 /// A hinge's four vertices, unfolded into the plane: the edge along x.
@@ -70,7 +70,7 @@ void Unfold(const FabricModel& model, FabricHinge& hinge) {
                         p2 = Corner(model, hinge.triangle[t], opposite);
     const double length = std::hypot(p1.u - p0.u, p1.v - p0.v);
     const double along = ((p2.u - p0.u) * (p1.u - p0.u) + (p2.v - p0.v) * (p1.v - p0.v)) / length;
-    const double height = 2 * model.rest[Index(hinge.triangle[t])].area / length;
+    const double height = 2 * model.Rest(Index(hinge.triangle[t])).area / length;
     // At a seam the two sides may be cut to slightly different lengths; the first counts.
     if (t == 0) at[1] = {length, 0, 0};
     at[2 + t] = {along, t == 0 ? height : -height, 0};
@@ -135,7 +135,8 @@ Plate PlateOf(const FabricModel& model, std::int32_t triangle) {
 
 /// Adds up the plates row by row: what touches a vertex are its own triangles, and those across an edge from it.
 void AssemblePlates(FabricModel& model) {
-  model.plates = {};
+  model.plates = ScalarMatrix();
+  model.plates.first.reserve(Index(model.vertexCount) + 1);
   model.plates.first.push_back(0);
   std::vector<std::int32_t> triangles;
   std::vector<std::pair<std::int32_t, double>> row;
@@ -166,37 +167,27 @@ void AssemblePlates(FabricModel& model) {
   model.plates.value.shrink_to_fit();
 }
 
-/// Makes the corners that agree on a vertex and its place in the material one point.
-void FindChart(FabricModel& model) {
-  struct Corner {
-    std::int32_t vertex;
-    Vec2 at;
-    std::size_t corner;
-  };
-  std::vector<Corner> order;
-  order.reserve(model.material.size());
-  for (std::size_t k = 0; k < model.material.size(); ++k) {
-    const Triangle& t = model.triangles[k / 3];
-    order.push_back({k % 3 == 0 ? t.a : k % 3 == 1 ? t.b : t.c, model.material[k], k});
-  }
-  std::sort(order.begin(), order.end(), [](const Corner& a, const Corner& b) {
-    return std::tie(a.vertex, a.at.x, a.at.y, a.corner) < std::tie(b.vertex, b.at.x, b.at.y, b.corner);
-  });
-  std::vector<std::int32_t> pointOf(order.size());
+/// Makes the corners that agree on a vertex and its place in the material one point. `material`: per corner.
+void FindChart(const std::vector<Vec2>& material, FabricModel& model) {
+  std::vector<std::int32_t> corners;  // of a vertex
   model.chart.reserve(Index(model.vertexCount));
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && order[k].vertex == order[k - 1].vertex && order[k].at == order[k - 1].at;
-    if (!same) model.chart.push_back(order[k].at);
-    pointOf[order[k].corner] = static_cast<std::int32_t>(model.chart.size() - 1);
+  model.chartTriangles.resize(model.triangles.size());
+  for (std::size_t v = 0; v < Index(model.vertexCount); ++v) {
+    corners.assign(model.corners.entry.begin() + model.corners.first[v],
+                   model.corners.entry.begin() + model.corners.first[v + 1]);
+    const auto at = [&](std::int32_t corner) { return material[Index(corner)]; };
+    std::sort(corners.begin(), corners.end(), [&](std::int32_t a, std::int32_t b) {
+      const Vec2 p = at(a), q = at(b);
+      return std::tie(p.x, p.y, a) < std::tie(q.x, q.y, b);
+    });
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      if (k == 0 || !(at(corners[k]) == at(corners[k - 1]))) model.chart.push_back(at(corners[k]));
+      Triangle& t = model.chartTriangles[Index(corners[k] / 3)];
+      (corners[k] % 3 == 0 ? t.a : corners[k] % 3 == 1 ? t.b : t.c) = static_cast<std::int32_t>(model.chart.size()) - 1;
+    }
   }
-  if (static_cast<double>(model.chart.size()) > kMostSeams * model.vertexCount) {
-    model.chart.clear();
-    return;
-  }
-  model.chartTriangles.reserve(model.triangles.size());
-  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    model.chartTriangles.push_back({pointOf[3 * t], pointOf[3 * t + 1], pointOf[3 * t + 2]});
-  }
+  model.hasPanels = static_cast<double>(model.chart.size()) <= kMostSeams * model.vertexCount;
+  if (model.chartTriangles == model.triangles) model.chartTriangles = std::vector<Triangle>();
 }
 
 /// Which vertices of its cloth a patch holds, one byte each.
@@ -225,9 +216,9 @@ struct Factors {
   double stretch = 1, bend = 1, density = 1;
 };
 
-/// Those of each triangle.
+/// Those of each triangle; none without patches.
 std::vector<Factors> FindFactors(const Scene& scene, const FabricModel& model) {
-  std::vector<Factors> factors(model.triangles.size());
+  std::vector<Factors> factors(scene.patches.empty() ? 0 : model.triangles.size());
   for (const Patch& patch : scene.patches) {
     const auto c = Index(patch.cloth);
     const int first = model.firstVertex[c];
@@ -259,7 +250,7 @@ std::vector<FoldYield<double>> FindYield(const Scene& scene, const FabricModel& 
     if (!sets(cloth)) continue;
     const MaterialPoint from = CornerAt(model, hinge.triangle[0], hinge.vertex[0]),
                         to = CornerAt(model, hinge.triangle[0], hinge.vertex[1]);
-    const double area = model.rest[Index(hinge.triangle[0])].area + model.rest[Index(hinge.triangle[1])].area;
+    const double area = model.Rest(Index(hinge.triangle[0])).area + model.Rest(Index(hinge.triangle[1])).area;
     const double length = std::hypot(to.u - from.u, to.v - from.v);
     yield[h] = {.angle = cloth.foldYield * area / length, .hardening = cloth.foldHardening};
   }
@@ -268,24 +259,25 @@ std::vector<FoldYield<double>> FindYield(const Scene& scene, const FabricModel& 
 
 }  // namespace
 
+RestTriangle<double> FabricModel::Rest(std::size_t triangle) const {
+  const auto t = static_cast<std::int64_t>(triangle);
+  return MakeRestTriangle<double>(Corner(*this, t, 0), Corner(*this, t, 1), Corner(*this, t, 2));
+}
+
 FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes) {
   FabricModel model;
+  std::vector<Vec2> material;
   for (std::size_t c = 0; c < meshes.size(); ++c) {
-    Append(meshes[c], scene.cloths[c].warpAngle * std::numbers::pi / 180, model);
+    Append(meshes[c], scene.cloths[c].warpAngle * std::numbers::pi / 180, model, material);
   }
   model.firstVertex.push_back(model.vertexCount);
   model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
-  model.rest.reserve(model.triangles.size());
-  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    const auto triangle = static_cast<std::int64_t>(t);
-    model.rest.push_back(
-        MakeRestTriangle<double>(Corner(model, triangle, 0), Corner(model, triangle, 1), Corner(model, triangle, 2)));
-  }
-  FindChart(model);
   model.corners = ListBy(model.vertexCount, 3 * model.triangles.size(), [&](std::size_t e) {
     const Triangle& t = model.triangles[e / 3];
     return e % 3 == 0 ? t.a : e % 3 == 1 ? t.b : t.c;
   });
+  FindChart(material, model);
+  material = std::vector<Vec2>();
   TakeMaterials(scene, model);
   return model;
 }
@@ -317,6 +309,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     model.plate.resize(Index(model.firstVertex[model.membranes.size()]), plate ? 1 : 0);
   }
   const std::vector<Factors> factors = FindFactors(scene, model);
+  const auto factorsOf = [&](std::size_t t) { return factors.empty() ? Factors() : factors[t]; };
   model.strength.clear();
   model.strength.reserve(factors.size());
   for (const Factors& factor : factors) model.strength.push_back(factor.stretch);
@@ -341,10 +334,11 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     const Triangle& triangle = model.triangles[t];
     const std::int32_t corners[3] = {triangle.a, triangle.b, triangle.c};
     const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
-    const double density = cloth.density * factors[t].density;
-    for (const std::int32_t v : corners) model.mass[Index(v)] += density * model.rest[t].area / 3;
+    const double density = cloth.density * factorsOf(t).density;
+    const double area = model.Rest(t).area;
+    for (const std::int32_t v : corners) model.mass[Index(v)] += density * area / 3;
 
-    const double bendWarp = cloth.bendWarp * factors[t].bend, bendWeft = cloth.bendWeft * factors[t].bend;
+    const double bendWarp = cloth.bendWarp * factorsOf(t).bend, bendWeft = cloth.bendWeft * factorsOf(t).bend;
     const double mixed = std::sqrt(bendWarp * bendWeft);
     const BendingStiffness stiffness{bendWarp, cloth.poissonRatio * mixed, bendWeft,
                                      0.5 * (1 - cloth.poissonRatio) * mixed};
@@ -361,7 +355,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
       const std::int32_t other = hinge.triangle[1 - side];
       const std::size_t from = (k + 1) % 3, to = (k + 2) % 3;
       present[k] = true;
-      areaAcross[k] = model.rest[Index(other)].area;
+      areaAcross[k] = model.Rest(Index(other)).area;
       across[k] = UnfoldedApex(points[from], points[to], points[k], CornerAt(model, other, corners[from]),
                                CornerAt(model, other, corners[to]), CornerAt(model, other, hinge.vertex[3 - side]));
     }
@@ -377,14 +371,14 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     model.hingeOf = std::vector<std::array<std::int32_t, 3>>();
     model.hingeEnds = Lists();
   }
-  model.buckling.assign(model.triangles.size(), 0);
+  model.buckling.assign(model.triangles.size() + kTrianglePad, 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& tri = model.triangles[t];
     const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
-    const double mixed = std::sqrt(cloth.bendWarp * cloth.bendWeft) * factors[t].bend;
+    const double mixed = std::sqrt(cloth.bendWarp * cloth.bendWeft) * factorsOf(t).bend;
     const double mass = model.mass[Index(tri.a)] + model.mass[Index(tri.b)] + model.mass[Index(tri.c)];
-    const double area = model.rest[t].area;
-    if (area > 0) model.buckling[t] = 2 * std::sqrt(mixed * mass / (6 * area)) / model.strength[t];
+    const double area = model.Rest(t).area;
+    if (area > 0) model.buckling[t] = 2 * std::sqrt(mixed * mass / (6 * area)) / model.Strength(t);
   }
 }
 

@@ -66,14 +66,12 @@ struct FabricModel {
   std::vector<int> firstTriangle;  ///< Per cloth, and the end.
   std::vector<Vec3> start;         ///< [m]
   std::vector<Triangle> triangles;
-  std::vector<Vec2> material;              ///< Three per triangle, u along the warp [m].
-  std::vector<Triangle> chartTriangles;    ///< The same, of points of the chart.
-  std::vector<Vec2> chart;                 ///< Material points, each once per vertex [m]; none where the
-                                           ///< triangles do not lie side by side in the material.
-  std::vector<std::int32_t> clothOf;       ///< Per triangle.
-  std::vector<RestTriangle<double>> rest;  ///< Per triangle.
-  std::vector<FabricHinge> hinges;         ///< None of these four where no cloth bends by them, or did before.
-  std::vector<int> firstHinge;             ///< Per cloth, and the end.
+  std::vector<Vec2> chart;               ///< Where vertices lie in the material, each place once, u along the warp [m].
+  std::vector<Triangle> chartTriangles;  ///< The triangles, of points of the chart; none where point p is vertex p.
+  bool hasPanels = false;                ///< Whether triangles lie side by side in the material.
+  std::vector<std::int32_t> clothOf;     ///< Per triangle.
+  std::vector<FabricHinge> hinges;       ///< None of these four where no cloth bends by them, or did before.
+  std::vector<int> firstHinge;           ///< Per cloth, and the end.
   std::vector<std::array<std::int32_t, 3>> hingeOf;  ///< Per triangle those opposite of its corners; -1 at a border.
   Lists corners;                                     ///< Per vertex its corners: 3 * triangle + 0, 1, 2, ascending.
   Lists hingeEnds;                                   ///< Per vertex its places in hinges: 4 * hinge + 0..3, ascending.
@@ -81,7 +79,8 @@ struct FabricModel {
   // Materials.
   std::vector<double> mass;                    ///< Per vertex [kg].
   std::vector<Membrane> membranes;             ///< Per cloth.
-  std::vector<double> strength;                ///< Per triangle: of its membrane over that of its cloth, by patches.
+  std::vector<double> strength;                ///< Per triangle: of its membrane over that of its cloth, by patches;
+                                               ///< none without patches.
   std::vector<double> pressure;                ///< Per cloth [Pa].
   std::vector<double> bendDamping;             ///< Per cloth [s].
   std::vector<BendingMatrix<double>> bending;  ///< Per triangle, for the angles of its three hinges [N m]; none
@@ -90,12 +89,22 @@ struct FabricModel {
   ScalarMatrix plates;                         ///< Bending of all cloths as a quadratic of the positions, each row
                                                ///< with an entry on the diagonal [N/m].
   std::vector<double> buckling;                ///< Per triangle: a plate's buckling stress on its own inertia over a
-                                               ///< step, times the step, 2 sqrt(D rho), over `strength` [N s/m].
+                                               ///< step, times the step, 2 sqrt(D rho), over `strength` [N s/m];
+                                               ///< with kTrianglePad more.
   std::vector<FabricTether> tethers;
   std::vector<FoldYield<double>> yield;  ///< Per hinge; none where no cloth's folds set.
   bool anyHinges = false;                ///< Whether any cloth bends by BendingLaw::Hinges.
 
   int Cloths() const { return static_cast<int>(firstVertex.size()) - 1; }
+  /// The triangles, of points of the chart.
+  std::span<const Triangle> ChartTriangles() const { return chartTriangles.empty() ? triangles : chartTriangles; }
+  /// Where a triangle's corner 0, 1, 2 lies in the material [m].
+  const Vec2& Material(std::size_t triangle, int corner) const {
+    const Triangle& t = ChartTriangles()[triangle];
+    return chart[static_cast<std::size_t>(corner == 0 ? t.a : corner == 1 ? t.b : t.c)];
+  }
+  RestTriangle<double> Rest(std::size_t triangle) const;
+  double Strength(std::size_t triangle) const { return strength.empty() ? 1 : strength[triangle]; }
 };
 
 /// `meshes`: one per cloth of the scene.

@@ -25,11 +25,32 @@ inline Edges LoadEdges(const Triangle* triangles, const Vec3* x, int first, int 
           {Doubles::Load(edge[3]), Doubles::Load(edge[4]), Doubles::Load(edge[5])}};
 }
 
+/// MakeRestTriangle, to the bit; strength counts as so much more area.
+inline RestTriangle<Doubles> LoadRest(const MembraneArgs& a, int first, int count) {
+  alignas(64) double edge[4][kLanes], strength[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const int at = first + (i < count ? i : count - 1);
+    const Triangle& t = a.chartTriangles[at];
+    const Vec2 &p0 = a.chart[t.a], &p1 = a.chart[t.b], &p2 = a.chart[t.c];
+    edge[0][i] = p1.x - p0.x, edge[1][i] = p1.y - p0.y;
+    edge[2][i] = p2.x - p0.x, edge[3][i] = p2.y - p0.y;
+    strength[i] = a.strength ? a.strength[at] : 1;
+  }
+  const Doubles u1 = Doubles::Load(edge[0]), v1 = Doubles::Load(edge[1]);
+  const Doubles u2 = Doubles::Load(edge[2]), v2 = Doubles::Load(edge[3]);
+  const Doubles det = u1 * v2 - u2 * v1, none(0), size = Select(det > none, det, -det);
+  const Doubles over = Doubles(1) / size;
+  constexpr double kBelowNormal = 0x1.ffffffffffffep-1023;
+  const auto isNormal = Select(size > over, over, size) > Doubles(kBelowNormal);
+  return {Select(isNormal, Doubles(0.5) * size, none) * Doubles::Load(strength),
+          {Select(isNormal, v2 / det, none), Select(isNormal, -u2 / det, none), Select(isNormal, -v1 / det, none),
+           Select(isNormal, u1 / det, none)}};
+}
+
 inline Triangles LoadTriangles(const MembraneArgs& a, int first, int count) {
   const Edges edges = LoadEdges(a.triangles, a.x, first, count);
   Triangles triangles;
-  triangles.rest.area = Doubles::Load(a.area + first);
-  for (int k = 0; k < 4; ++k) triangles.rest.inverse[k] = Doubles::Load(a.inverse[k] + first);
+  triangles.rest = LoadRest(a, first, count);
   triangles.f = Deformation(triangles.rest, Vector3<Doubles>{}, edges.first, edges.second);
   return triangles;
 }

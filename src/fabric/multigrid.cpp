@@ -19,7 +19,35 @@ constexpr int kExtraParts = 16;      // each marks all nodes of a level, so ther
 constexpr int kMostDirect = 200;     // nodes up to which the coarsest level is factored: 6 ms
 constexpr int kCoarsestSweeps = 4;   // of Jacobi where it is larger
 
-using Slot = std::uint16_t;
+/// Numbers below 2^16, in one byte each where all are below 2^8, as those of meshes are that are no fans.
+class Slots {
+ public:
+  void push_back(std::ptrdiff_t slot) {
+    assert(slot >= 0 && slot <= 0xffff);
+    if (wide_.empty() && slot <= 0xff) return narrow_.push_back(static_cast<std::uint8_t>(slot));
+    wide_.insert(wide_.end(), narrow_.begin(), narrow_.end());
+    narrow_.clear();
+    wide_.push_back(static_cast<std::uint16_t>(slot));
+  }
+  void shrink_to_fit() {
+    narrow_.shrink_to_fit();
+    wide_.shrink_to_fit();
+  }
+  std::int32_t size() const { return static_cast<std::int32_t>(narrow_.size() + wide_.size()); }
+  std::size_t Bytes() const { return narrow_.capacity() + 2 * wide_.capacity(); }
+  /// Calls visit(array), of either type.
+  template <class Visit>
+  void InArray(Visit&& visit) const {
+    if (wide_.empty())
+      visit(narrow_.data());
+    else
+      visit(wide_.data());
+  }
+
+ private:
+  std::vector<std::uint8_t> narrow_;
+  std::vector<std::uint16_t> wide_;
+};
 
 template <class T, class Allocator>
 std::size_t Bytes(const std::vector<T, Allocator>& array) {
@@ -40,11 +68,11 @@ struct Multigrid::Level {
   std::size_t chunkBlocks = 0;  // in the longest chunk
   Window window;                // of chunks of T, for kNodeSlab nodes each
   // In the order of the loops: for each block of H and each weight of its column where in its row of T it goes.
-  std::vector<Slot> productSlot;
+  Slots productSlot;
   std::vector<std::int32_t> productSlotFirst;  // per chunk of kProductChunk rows: its first slot
   // For each weight of P' how many blocks at the start of that row of T are left of the diagonal of A, and then for
   // each block that is not where in its row of A it goes; per node, where the latter start.
-  std::vector<Slot> skip, slot;
+  Slots skip, slot;
   std::vector<std::int32_t> slotFirst;
 
   SystemMatrix matrix;
@@ -89,7 +117,7 @@ const Prolongation& Multigrid::prolongation(int level) const {
 namespace {
 
 /// P' S P, node by node. `rowFirst`, `row`, `rowWeight`: P' in compressed rows.
-ScalarMatrix CoarseScalars(const ScalarMatrix& fine, const Prolongation& p, const std::vector<std::int32_t>& rowFirst,
+ScalarMatrix CoarseScalars(const ScalarRows& fine, const Prolongation& p, const std::vector<std::int32_t>& rowFirst,
                            const std::vector<std::int32_t>& rowOf, const std::vector<Real>& rowWeight) {
   ScalarMatrix coarse;
   coarse.first.push_back(0);
@@ -99,7 +127,7 @@ ScalarMatrix CoarseScalars(const ScalarMatrix& fine, const Prolongation& p, cons
     columns.clear();
     for (std::int32_t e = rowFirst[node]; e < rowFirst[node + 1]; ++e) {
       for (std::int32_t k = fine.first[rowOf[e]]; k < fine.first[rowOf[e] + 1]; ++k) {
-        const double value = static_cast<double>(rowWeight[e]) * fine.value[k];
+        const double value = static_cast<double>(rowWeight[e]) * static_cast<double>(fine.value[k]);
         for (std::int32_t f = p.first[fine.column[k]]; f < p.first[fine.column[k] + 1]; ++f) {
           const std::int32_t column = p.column[f];
           if (std::exchange(seenBy[column], node) != node) columns.push_back(column), sum[column] = 0;
@@ -152,10 +180,10 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
 
     // Rows of T: the nodes of all columns, ascending. Only those of rows that P' reads.
     std::vector<std::int32_t> nodes, productColumn;
+    level.productFirst.reserve(static_cast<std::size_t>(P.rows()) + 1);
     level.productFirst.assign(1, 0);
     for (int row = 0; row < P.rows(); ++row) {
-      if (row % kProductChunk == 0)
-        level.productSlotFirst.push_back(static_cast<std::int32_t>(level.productSlot.size()));
+      if (row % kProductChunk == 0) level.productSlotFirst.push_back(level.productSlot.size());
       nodes.clear();
       const bool read = P.first[row] < P.first[row + 1];
       for (std::int32_t k = pattern.first[row]; read && k < pattern.first[row + 1]; ++k) {
@@ -164,12 +192,11 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
       }
       std::sort(nodes.begin(), nodes.end());
       nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-      assert(nodes.size() <= 0xffff);
       for (std::int32_t k = pattern.first[row]; read && k < pattern.first[row + 1]; ++k) {
         const std::int32_t other = pattern.column[k];
         for (std::int32_t e = P.first[other]; e < P.first[other + 1]; ++e) {
           const auto found = std::lower_bound(nodes.begin(), nodes.end(), P.column[e]);
-          level.productSlot.push_back(static_cast<Slot>(found - nodes.begin()));
+          level.productSlot.push_back(found - nodes.begin());
         }
       }
       productColumn.insert(productColumn.end(), nodes.begin(), nodes.end());
@@ -193,21 +220,19 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
     greatestProduct = std::max(greatestProduct, level.chunkBlocks * static_cast<std::size_t>(level.window.slots));
 
     for (int node = 0; node < P.nodes; ++node) {
-      level.slotFirst.push_back(static_cast<std::int32_t>(level.slot.size()));
+      level.slotFirst.push_back(level.slot.size());
       for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
         const auto begin = productColumn.begin() + level.productFirst[level.row[e]];
         const auto end = productColumn.begin() + level.productFirst[level.row[e] + 1];
         const auto diagonal = std::lower_bound(begin, end, node);
-        level.skip.push_back(static_cast<Slot>(diagonal - begin));
+        level.skip.push_back(diagonal - begin);
         for (auto at = diagonal; at != end; ++at) {
-          const std::int32_t place = coarse.Find(node, *at) - level.matrix.Diagonal(node);
-          assert(place >= 0 && place <= 0xffff);
-          level.slot.push_back(static_cast<Slot>(place));
+          level.slot.push_back(coarse.Find(node, *at) - level.matrix.Diagonal(node));
         }
       }
     }
 
-    for (std::vector<Slot>* slots : {&level.productSlot, &level.slot, &level.skip}) slots->shrink_to_fit();
+    for (Slots* slots : {&level.productSlot, &level.slot, &level.skip}) slots->shrink_to_fit();
 
     level.right.assign(VectorLength(P.nodes), 0);
     level.solution.assign(VectorLength(P.nodes), 0);
@@ -215,9 +240,6 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
     above = &level.matrix;
   }
   product_.assign(9 * greatestProduct + 1, 0);
-  fineScratch_.assign(VectorLength(fine.rows()), 0);
-  extraProduct_.begin.assign(fine.rows(), 0);
-  extraProduct_.end.assign(fine.rows(), 0);
   if (!levels_.empty()) {
     for (ExtraPart& part : parts_) part.place.assign(levels_.front()->p.nodes, -1);
   }
@@ -250,10 +272,10 @@ void Multigrid::RefillExtra(const SystemMatrix& fine, const Executor& executor) 
 void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Executor& executor) {
   const Prolongation& p = level.p;
   const BlockPattern& pattern = fine.pattern();
-  const auto multiply = [&](int chunk) {  // T = H P, by rows
+  const auto multiply = [&](int chunk, const auto* slots) {  // T = H P, by rows
     const int begin = chunk * kProductChunk, end = std::min(p.rows(), begin + kProductChunk);
     const std::int64_t shift = level.ProductShift(begin);
-    const Slot* __restrict slot = level.productSlot.data() + level.productSlotFirst[chunk];
+    const auto* __restrict slot = slots + level.productSlotFirst[chunk];
     for (int row = begin; row < end; ++row) {
       const std::int32_t productBegin = level.productFirst[row], productEnd = level.productFirst[row + 1];
       if (productBegin == productEnd) continue;
@@ -280,15 +302,15 @@ void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Execu
   };
   // A = P' T on and right of the diagonal, on top of the constant part.
   level.matrix.Reset(executor);
-  const auto sum = [&](int begin, int end) {
-    const Slot* __restrict slot = level.slot.data() + level.slotFirst[begin];
+  const auto sum = [&](int begin, int end, const auto* skip, const auto* slots) {
+    const auto* __restrict slot = slots + level.slotFirst[begin];
     for (int node = begin; node < end; ++node) {
       Real* __restrict to = level.matrix.DiagonalBlock(node);
       for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
         const Real weight = level.rowWeight[e];
         const int row = level.row[e];
         const std::int64_t shift = level.ProductShift(row);
-        const Real* __restrict from = product_.data() + 9 * (shift + level.productFirst[row] + level.skip[e]);
+        const Real* __restrict from = product_.data() + 9 * (shift + level.productFirst[row] + skip[e]);
         const Real* const last = product_.data() + 9 * (shift + level.productFirst[row + 1]);
         for (; from < last; from += 9) AddScaled(to + 9 * static_cast<std::size_t>(*slot++), weight, from);
       }
@@ -297,11 +319,15 @@ void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Execu
   int made = 0;
   for (int slab = 0; slab < static_cast<int>(level.window.end.size()); ++slab) {
     const int first = std::exchange(made, level.window.end[slab]);
-    executor.ForChunks(made - first, [&](int chunk) { multiply(first + chunk); });
+    executor.ForChunks(made - first, [&](int chunk) {
+      level.productSlot.InArray([&](const auto* slots) { multiply(first + chunk, slots); });
+    });
     const int begin = slab * kNodeSlab, count = std::min(kNodeSlab, p.nodes - begin);
     executor.ForChunks(Chunks(count, kNodeChunk), [&](int chunk) {
       const int from = begin + chunk * kNodeChunk;
-      sum(from, std::min(from + kNodeChunk, begin + count));
+      const int to = std::min(from + kNodeChunk, begin + count);
+      level.skip.InArray(
+          [&](const auto* skip) { level.slot.InArray([&](const auto* slots) { sum(from, to, skip, slots); }); });
     });
   }
 }
@@ -310,6 +336,10 @@ void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Execu
 /// in memory of its own; then all are laid end to end.
 template <class Visit>
 void Multigrid::SumRows(int rows, ExtraRows& to, const Executor& executor, Visit&& visit) {
+  if (to.begin.size() < static_cast<std::size_t>(rows)) {
+    to.begin.resize(rows);
+    to.end.resize(rows);
+  }
   const auto firstRow = [&](int part) {
     return static_cast<int>(static_cast<std::int64_t>(rows) * part / kExtraParts);
   };
@@ -384,11 +414,11 @@ void Multigrid::SolveCoarsest(const SystemMatrix& matrix, const Real* r, Real* z
   }
 }
 
-void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, const Executor& executor) {
+void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, Real* scratch, const Executor& executor) {
   const auto matrixOf = [&](int k) -> const SystemMatrix& { return k == 0 ? fine : levels_[k - 1]->matrix; };
   const auto rightOf = [&](int k) { return k == 0 ? r : levels_[k - 1]->right.data(); };
   const auto solutionOf = [&](int k) { return k == 0 ? z : levels_[k - 1]->solution.data(); };
-  const auto scratchOf = [&](int k) { return k == 0 ? fineScratch_.data() : levels_[k - 1]->scratch.data(); };
+  const auto scratchOf = [&](int k) { return k == 0 ? scratch : levels_[k - 1]->scratch.data(); };
   for (int k = 0; k < levels(); ++k) {
     matrixOf(k).SmoothFromZero(kOmega, rightOf(k), solutionOf(k), executor);
     matrixOf(k).Residual(rightOf(k), solutionOf(k), scratchOf(k), executor);
@@ -426,7 +456,7 @@ void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, const Ex
 }
 
 std::size_t Multigrid::MemoryBytes() const {
-  std::size_t bytes = Bytes(product_) + Bytes(fineScratch_) + Bytes(denseVector_);
+  std::size_t bytes = Bytes(product_) + Bytes(denseVector_);
   bytes += 2 * sizeof(double) * static_cast<std::size_t>(dense_.size()) * dense_.size();
   bytes +=
       Bytes(extraProduct_.begin) + Bytes(extraProduct_.end) + Bytes(extraProduct_.column) + Bytes(extraProduct_.block);
@@ -435,7 +465,7 @@ std::size_t Multigrid::MemoryBytes() const {
     const Level& level = *owned;
     bytes += Bytes(level.p.first) + Bytes(level.p.column) + Bytes(level.p.weight) + Bytes(level.rowFirst) +
              Bytes(level.row) + Bytes(level.rowWeight) + Bytes(level.productFirst) + Bytes(level.productSlotFirst) +
-             Bytes(level.productSlot) + Bytes(level.skip) + Bytes(level.slot) + Bytes(level.slotFirst) +
+             level.productSlot.Bytes() + level.skip.Bytes() + level.slot.Bytes() + Bytes(level.slotFirst) +
              Bytes(level.right) + Bytes(level.solution) + Bytes(level.scratch) + level.matrix.MemoryBytes();
   }
   return bytes;

@@ -34,10 +34,11 @@ class Multigrid {
   /// accuracy.
   void RefillExtra(const SystemMatrix& fine, const Executor& executor);
 
-  /// z = V r: an approximate inverse of `fine` times r, both of VectorLength(fine.rows()) Reals. A symmetric operator,
+  /// z = V r: an approximate inverse of `fine` times r, all three vectors of VectorLength(fine.rows()) Reals, and
+  /// `scratch` any of those that ends in zeros. A symmetric operator,
   /// positive definite if `fine` is and no eigenvalue of D^-1 fine exceeds four: that holds for sums of terms over four
   /// vertices each, and for triangles.
-  void Apply(const SystemMatrix& fine, const Real* r, Real* z, const Executor& executor);
+  void Apply(const SystemMatrix& fine, const Real* r, Real* z, Real* scratch, const Executor& executor);
 
   /// Coarse levels; their matrices and what leads to them, from the finest on.
   int levels() const { return static_cast<int>(levels_.size()); }
@@ -63,7 +64,6 @@ class Multigrid {
   std::vector<ExtraPart> parts_;  // each of a share of the rows, while extra blocks are summed
   RealVector product_;            // as much of H P of the level at hand as is needed at once
   ExtraRows extraProduct_;        // E P of the level at hand
-  RealVector fineScratch_;        // one vector over the vertices
   DenseFactor dense_;
   std::vector<double> denseVector_;
   bool direct_ = false;

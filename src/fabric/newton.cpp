@@ -30,8 +30,8 @@ std::size_t Index(std::int64_t i) {
 NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
     : model_(model),
       executor_(executor),
-      pattern_(MakePattern(model.vertexCount, model.triangles)),
-      objective_(model, pattern_, executor) {
+      matrix_(MakePattern(model.vertexCount, model.triangles)),
+      objective_(model, matrix_.pattern(), executor) {
   gradient_.resize(Index(model.vertexCount));
   trial_.resize(Index(model.vertexCount));
   right_.assign(VectorLength(model.vertexCount), 0);
@@ -43,26 +43,26 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
   std::vector<std::uint8_t> pinned(free.size());
   for (std::size_t v = 0; v < free.size(); ++v) pinned[v] = free[v] ? 0 : 1;
   objective_.TakeMaterials();
-  const ScalarMatrix& plates = model_.plates;
-  matrix_.SetUp(pattern_, plates, pinned);
-  plateDiagonal_.resize(Index(model_.vertexCount));
-  for (int row = 0; row < model_.vertexCount; ++row) {
-    const auto begin = plates.column.begin() + plates.first[Index(row)];
-    const auto end = plates.column.begin() + plates.first[Index(row) + 1];
-    plateDiagonal_[Index(row)] = plates.value[Index(std::lower_bound(begin, end, row) - plates.column.begin())];
-  }
+  matrix_.SetUp(model_.plates, pinned);
   SetStep(h);
-  const MaterialMesh material{model_.triangles, model_.chartTriangles, model_.chart};
-  multigrid_.SetUp(matrix_, MakeHierarchy(pattern_, material, pinned));
+  MaterialMesh material{.triangles = model_.triangles, .materialTriangles = {}, .material = {}};
+  if (model_.hasPanels) {
+    material.materialTriangles = model_.ChartTriangles();
+    material.material = model_.chart;
+  }
+  multigrid_.SetUp(matrix_, MakeHierarchy(matrix_.pattern(), material, pinned));
   conjugateGradient_.SetUp(model_.vertexCount);
 }
 
 /// Inertia is all that the length of a step changes in the constant part: masses over h^2 on the diagonal.
 void NewtonSolver::SetStep(double h) {
-  for (int row = 0; row < model_.vertexCount; ++row) {
-    const double inertia = model_.mass[Index(row)] / (h * h);
-    matrix_.SetConstant(row, static_cast<Real>(plateDiagonal_[Index(row)] + inertia));
-  }
+  const ScalarMatrix& plates = model_.plates;
+  ForRange(executor_, Index(model_.vertexCount), [&](int row) {
+    const auto begin = plates.column.begin() + plates.first[Index(row)];
+    const auto end = plates.column.begin() + plates.first[Index(row) + 1];
+    const double bending = plates.value[Index(std::lower_bound(begin, end, row) - plates.column.begin())];
+    matrix_.SetConstant(row, static_cast<Real>(bending + model_.mass[Index(row)] / (h * h)));
+  });
 }
 
 NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonSettings& settings) {

@@ -50,12 +50,10 @@ class NewtonSolver {
 
   const FabricModel& model_;
   const Executor& executor_;
-  BlockPattern pattern_;
-  Objective objective_;
   SystemMatrix matrix_;
+  Objective objective_;
   Multigrid multigrid_;
   ConjugateGradient conjugateGradient_;
-  std::vector<double> plateDiagonal_;  // per vertex [N/m]
   std::vector<Vec3> gradient_, trial_;
   RealVector right_, direction_;
   double trialEnergy_ = 0;

@@ -30,21 +30,17 @@ Vector3<double> At(std::span<const Vec3> y, std::int32_t v) {
 
 Objective::Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor,
                      const Kernels& kernels)
-    : model_(model), pattern_(pattern), executor_(executor), kernels_(kernels) {
+    : model_(model),
+      executor_(executor),
+      kernels_(kernels),
+      slots_(CornerSlots(pattern, model.triangles, model.corners.entry)) {
   const std::size_t triangles = model.triangles.size();
   FindWindow();
-  FindParts();
   for (int c = 0; c < model.Cloths(); ++c) {
     const int end = model.firstTriangle[Index(c) + 1];
     for (int t = model.firstTriangle[Index(c)]; t < end; t += kRowsPerChunk) {
       batches_.push_back({c, t, std::min(t + kRowsPerChunk, end)});
     }
-  }
-  for (std::vector<double>* padded : {&area_, &inverse_[0], &inverse_[1], &inverse_[2], &inverse_[3], &buckling_}) {
-    padded->assign(triangles + kTrianglePad, 0);
-  }
-  for (std::size_t t = 0; t < triangles; ++t) {
-    for (std::size_t k = 0; k < 4; ++k) inverse_[k][t] = model.rest[t].inverse[k];
   }
   const auto live = std::min(triangles, static_cast<std::size_t>(window_.slots) * kRowsPerChunk);
   triangleGradient_.resize(3 * live);
@@ -56,12 +52,9 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
 }
 
 void Objective::TakeMaterials() {
-  // A patch counts as so much more membrane.
-  for (std::size_t t = 0; t < model_.rest.size(); ++t) area_[t] = model_.rest[t].area * model_.strength[t];
-  std::copy(model_.buckling.begin(), model_.buckling.end(), buckling_.begin());
   const bool damped = std::any_of(model_.membranes.begin(), model_.membranes.end(),
                                   [](const Membrane& membrane) { return membrane.damping > 0; });
-  for (std::vector<double>& padded : startStrain_) padded.resize(damped ? area_.size() : 0);
+  for (std::vector<double>& padded : startStrain_) padded.resize(damped ? model_.triangles.size() + kTrianglePad : 0);
   const std::size_t hinges = model_.anyHinges ? model_.hinges.size() : 0;
   for (std::vector<double>* perHinge : {&startAngle_, &angle_, &moment_}) perHinge->resize(hinges);
   hinge_.resize(hinges);
@@ -85,17 +78,6 @@ void Objective::FindWindow() {
 /// Where what is evaluated of a triangle lies.
 std::int32_t Objective::Place(std::int64_t triangle) const {
   return static_cast<std::int32_t>(triangle % (static_cast<std::int64_t>(window_.slots) * kRowsPerChunk));
-}
-
-/// Which blocks of triangles each block of the matrix is the sum of.
-void Objective::FindParts() {
-  const std::vector<std::array<std::int32_t, 9>> blocks = TriangleBlocks(pattern_, model_.triangles);
-  const std::size_t count = 3 * blocks.size();  // 3 t + k is corner k of triangle t with corner k + 1
-  same_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][e % 3 * 3 + (e + 1) % 3]; });
-  transposed_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][(e + 1) % 3 * 3 + e % 3]; });
-  for (Lists* lists : {&same_, &transposed_}) {
-    for (std::int32_t& e : lists->entry) e = Place(e / 3) * kHessianReals + e % 3 * 9;
-  }
 }
 
 /// Sums body(begin, end) over chunks of 0..count-1, in order.
@@ -176,14 +158,15 @@ MembraneArgs Objective::Arguments(std::span<const Vec3> y, const Batch& of) {
           .end = of.end,
           .triangles = model_.triangles.data(),
           .x = y.data(),
-          .area = area_.data(),
-          .inverse = {inverse_[0].data(), inverse_[1].data(), inverse_[2].data(), inverse_[3].data()},
+          .chartTriangles = model_.ChartTriangles().data(),
+          .chart = model_.chart.data(),
+          .strength = model_.strength.empty() ? nullptr : model_.strength.data(),
           .law = membrane.kind,
           .orthotropic = membrane.orthotropic,
           .neoHookean = membrane.neoHookean,
           .damping = membrane.damping * perStep,
           .startStrain = {startStrain_[0].data(), startStrain_[1].data(), startStrain_[2].data()},
-          .buckling = buckling_.data(),
+          .buckling = model_.buckling.data(),
           .compression = kCompressionShare * perStep,
           .outFirst = of.begin,
           .gradient = triangleGradient_.data() + 3 * Index(Place(of.begin)),
@@ -314,18 +297,19 @@ double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gr
     for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
   };
   SumMoments(y);
+  const int live = window_.slots * kRowsPerChunk;
   ForRows(y, true, [&](int begin, int end) {
     Gather(y, gradient, begin, end);
+    const int oldest = std::max(0, window_.end[Index(begin / kRowsPerSlab)] * kRowsPerChunk - live);
     kernels_.assemble({.begin = begin,
                        .end = end,
-                       .first = pattern_.first.data(),
-                       .column = pattern_.column.data(),
                        .storedFirst = matrix.storedFirst().data(),
                        .constant = matrix.constant().data(),
-                       .sameFirst = same_.first.data(),
-                       .same = same_.entry.data(),
-                       .transposedFirst = transposed_.first.data(),
-                       .transposed = transposed_.entry.data(),
+                       .cornerFirst = model_.corners.first.data(),
+                       .corner = model_.corners.entry.data(),
+                       .slot = slots_.data(),
+                       .firstTriangle = oldest / live * live,
+                       .triangles = live,
                        .hessian = triangleHessian_.data(),
                        .blocks = matrix.Block(0)});
     for (int v = begin; v < end && !step_.loads.empty(); ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);

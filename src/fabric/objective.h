@@ -71,7 +71,6 @@ class Objective {
   PointEnergy<double> Pull(const FabricTether& tether, std::span<const Vec3> y) const;
   double PlateEnergy(std::span<const Vec3> y);
   void FindWindow();
-  void FindParts();
   MembraneArgs Arguments(std::span<const Vec3> y, const Batch& batch);
   void EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int block);
   void AddPressure(std::span<const Vec3> y, const MembraneArgs& to, double pressure);
@@ -86,16 +85,15 @@ class Objective {
   double Sum(int count, Body&& body);
 
   const FabricModel& model_;
-  const BlockPattern& pattern_;
   const Executor& executor_;
   const Kernels& kernels_;
   StepSettings step_;
   std::span<const Fold> folds_;
   Contacts* contacts_ = nullptr;
-  Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
+  std::vector<std::uint16_t> slots_;  // of model_.corners: see CornerSlots
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:
-  std::vector<double> area_, inverse_[4], startStrain_[3], buckling_;
+  std::vector<double> startStrain_[3];
   // The same of those that are needed at once:
   Window window_;  // of kRowsPerChunk triangles each, for kRowsPerSlab rows of the matrix each
   std::vector<Vec3> triangleGradient_;

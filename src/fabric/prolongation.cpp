@@ -79,7 +79,10 @@ Prolongation CoarsenByGrid(int rows, std::vector<Sample>& samples, std::vector<P
   std::vector<std::int32_t> node(slots, -1);
   std::vector<Sample> nodes;
   Prolongation p;
+  p.first.reserve(static_cast<std::size_t>(rows) + 1);
   p.first.push_back(0);
+  p.column.reserve(4 * samples.size());
+  p.weight.reserve(4 * samples.size());
   std::vector<std::pair<std::int32_t, double>> row;
   const auto finishRows = [&](int end) {
     for (; p.rows() < end; row.clear()) AppendRow(row, p);
@@ -116,6 +119,8 @@ Prolongation CoarsenByGrid(int rows, std::vector<Sample>& samples, std::vector<P
     }
   }
   finishRows(rows);
+  p.column.shrink_to_fit();
+  p.weight.shrink_to_fit();
   p.nodes = static_cast<int>(nodes.size());
   samples = std::move(nodes);
   for (Panel& panel : panels) panel.spacing *= kVerticesPerNode;
@@ -245,6 +250,7 @@ std::vector<Prolongation> MaterialHierarchy(int vertices, const MaterialMesh& me
     root[std::max(a, b)] = std::min(a, b);
   };
   std::vector<std::pair<std::int32_t, std::int32_t>> corners;  // vertex and its point of material
+  corners.reserve(3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle &of = mesh.triangles[t], &m = mesh.materialTriangles[t];
     join(m.a, m.b), join(m.b, m.c);
@@ -280,10 +286,13 @@ std::vector<Prolongation> MaterialHierarchy(int vertices, const MaterialMesh& me
   }
 
   std::vector<Sample> samples;
+  samples.reserve(corners.size());
   for (const auto& [vertex, point] : corners) {
     if (IsPinned(pinned, vertex)) continue;
     samples.push_back({vertex, panelOf[point], mesh.material[point].x, mesh.material[point].y});
   }
+  corners = {};
+  corners.shrink_to_fit();
   std::vector<Prolongation> levels;
   int rows = vertices;
   while (rows > kFewNodes) {

@@ -46,7 +46,7 @@ void ReferenceSolver::Begin(const StepSettings& step) {
   for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
     const Triangle& tri = model_.triangles[t];
     startStrain_[t] =
-        GreenStrain(Deformation(model_.rest[t], At(step.start, tri.a), At(step.start, tri.b), At(step.start, tri.c)));
+        GreenStrain(Deformation(model_.Rest(t), At(step.start, tri.a), At(step.start, tri.b), At(step.start, tri.c)));
   }
   for (std::size_t h = 0; h < model_.hinges.size(); ++h) {
     const std::int32_t* v = model_.hinges[h].vertex;
@@ -83,8 +83,8 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     const std::int32_t corners[3] = {tri.a, tri.b, tri.c};
     const std::size_t cloth = Index(model_.clothOf[t]);
     // All of a membrane's terms are in proportion to its area, so that of a patch counts as so much more of it.
-    RestTriangle<double> rest = model_.rest[t];
-    rest.area *= model_.strength[t];
+    RestTriangle<double> rest = model_.Rest(t);
+    rest.area *= model_.Strength(t);
     const Membrane& membrane = model_.membranes[cloth];
     const DeformationGradient<double> f = Deformation(rest, At(y, tri.a), At(y, tri.b), At(y, tri.c));
     const MembraneDamping<double> damping{membrane.damping * perStep, startStrain_[t]};

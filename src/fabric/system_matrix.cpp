@@ -56,36 +56,49 @@ std::int32_t BlockPattern::Find(std::int32_t row, std::int32_t columnSought) con
 }
 
 BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std::span<const Edge> morePairs) {
-  std::vector<std::vector<std::int32_t>> neighbours(vertices);
-  const auto couple = [&](std::int32_t a, std::int32_t b) {
-    neighbours[a].push_back(b);
-    neighbours[b].push_back(a);
+  const auto forPairs = [&](auto&& couple) {
+    for (const Triangle& t : triangles) couple(t.a, t.b), couple(t.b, t.c), couple(t.c, t.a);
+    for (const Edge& pair : morePairs) couple(pair.a, pair.b);
   };
-  for (int v = 0; v < vertices; ++v) neighbours[v].push_back(v);
-  for (const Triangle& t : triangles) couple(t.a, t.b), couple(t.b, t.c), couple(t.c, t.a);
-  for (const Edge& pair : morePairs) couple(pair.a, pair.b);
-
+  // Rows with a block for each time that two are coupled; then each once.
   BlockPattern pattern;
-  pattern.first.push_back(0);
-  for (std::vector<std::int32_t>& row : neighbours) {
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
-    pattern.first.push_back(static_cast<std::int32_t>(pattern.column.size()));
+  std::vector<std::int32_t>&first = pattern.first, &column = pattern.column;
+  first.assign(static_cast<std::size_t>(vertices) + 1, 1);
+  first[0] = 0;
+  forPairs([&](std::int32_t a, std::int32_t b) { ++first[a + 1], ++first[b + 1]; });
+  for (int v = 0; v < vertices; ++v) first[v + 1] += first[v];
+  column.resize(first.back());
+  std::vector<std::int32_t> next(first.begin(), first.end() - 1);
+  for (int v = 0; v < vertices; ++v) column[next[v]++] = v;
+  forPairs([&](std::int32_t a, std::int32_t b) { column[next[a]++] = b, column[next[b]++] = a; });
+  auto end = column.begin();
+  for (int v = 0; v < vertices; ++v) {
+    const auto begin = column.begin() + first[v], stop = column.begin() + first[v + 1];
+    std::sort(begin, stop);
+    first[v] = static_cast<std::int32_t>(end - column.begin());
+    end = std::copy(begin, std::unique(begin, stop), end);
   }
+  first[vertices] = static_cast<std::int32_t>(end - column.begin());
+  column.erase(end, column.end());
+  column.shrink_to_fit();
   return pattern;
 }
 
-std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
-                                                        std::span<const Triangle> triangles) {
-  std::vector<std::array<std::int32_t, 9>> blocks;
-  blocks.reserve(triangles.size());
-  for (const Triangle& t : triangles) {
-    const std::int32_t corners[3] = {t.a, t.b, t.c};
-    std::array<std::int32_t, 9>& of = blocks.emplace_back();
-    for (int k = 0; k < 9; ++k) of[k] = pattern.Find(corners[k / 3], corners[k % 3]);
+std::vector<std::uint16_t> CornerSlots(const BlockPattern& pattern, std::span<const Triangle> triangles,
+                                       std::span<const std::int32_t> corners) {
+  std::vector<std::uint16_t> slots;
+  slots.reserve(2 * corners.size());
+  for (const std::int32_t corner : corners) {
+    const Triangle& t = triangles[corner / 3];
+    const std::int32_t vertex[3] = {t.a, t.b, t.c};
+    const std::int32_t row = vertex[corner % 3];
+    for (const int ahead : {1, 2}) {
+      const std::int32_t slot = pattern.Find(row, vertex[(corner + ahead) % 3]) - pattern.Find(row, row);
+      assert(slot <= 0xffff);
+      slots.push_back(static_cast<std::uint16_t>(std::max(slot, 0)));
+    }
   }
-  return blocks;
+  return slots;
 }
 
 void AppendRow(ScalarMatrix& matrix, std::vector<std::pair<std::int32_t, double>>& row) {
@@ -111,10 +124,15 @@ ScalarMatrix MakeScalarMatrix(int rows, std::span<const ScalarEntry> entries) {
 }
 
 void SystemMatrix::SetUp(BlockPattern pattern, const ScalarMatrix& constant, std::span<const std::uint8_t> pinned) {
-  assert(constant.rows() == pattern.rows());
   pattern_ = std::move(pattern);
+  SetUp(constant, pinned);
+}
+
+void SystemMatrix::SetUp(const ScalarMatrix& constant, std::span<const std::uint8_t> pinned) {
+  assert(constant.rows() == pattern_.rows());
   pinned_.assign(pinned.begin(), pinned.end());
   const int n = rows();
+  storedFirst_.reserve(static_cast<std::size_t>(n) + 1);
   storedFirst_.assign(1, 0);
   mirror_.clear();
   mirror_.reserve(static_cast<std::size_t>(pattern_.blocks() - n) / 2);
@@ -134,9 +152,12 @@ void SystemMatrix::SetUp(BlockPattern pattern, const ScalarMatrix& constant, std
   constant_.assign(stored, 0);
   blocks_.assign(9 * stored + 1, 0);
   inverse_.assign(9 * static_cast<std::size_t>(n) + 1, 0);
+  restFirst_.reserve(static_cast<std::size_t>(n) + 1);
   restFirst_.assign(1, 0);
   restColumn_.clear();
   restValue_.clear();
+  restColumn_.reserve(constant.column.size());
+  restValue_.reserve(constant.column.size());
   for (int row = 0; row < n; ++row) {
     for (std::int32_t k = constant.first[row]; k < constant.first[row + 1]; ++k) {
       const std::int32_t column = constant.column[k];
@@ -153,13 +174,7 @@ void SystemMatrix::SetUp(BlockPattern pattern, const ScalarMatrix& constant, std
   cleared_.shrink_to_fit();
   restColumn_.shrink_to_fit();
   restValue_.shrink_to_fit();
-  extra_.begin.assign(n, 0);
-  extra_.end.assign(n, 0);
   extra_.any = false;
-}
-
-ScalarMatrix SystemMatrix::Rest() const {
-  return {restFirst_, restColumn_, {restValue_.begin(), restValue_.end()}};
 }
 
 void SystemMatrix::Reset(const Executor& executor) {
@@ -182,7 +197,8 @@ void SystemMatrix::SetExtra(std::span<const ExtraTerm> terms, const Executor& ex
   if (!extra_.any) return;
   // Which terms each row is in, and room for a block per other vertex of each.
   extraFirst_.assign(static_cast<std::size_t>(n) + 1, 0);
-  std::fill(extra_.end.begin(), extra_.end.end(), 0);
+  extra_.begin.resize(n);
+  extra_.end.assign(n, 0);
   for (const ExtraTerm& t : terms) {
     int vertices = 0;
     for (int k = 0; k < 4; ++k) vertices += counts(t, k) ? 1 : 0;

@@ -42,9 +42,10 @@ struct BlockPattern {
 /// Couples the corners of each triangle, and the ends of each of `morePairs`, over `vertices` of them.
 BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std::span<const Edge> morePairs = {});
 
-/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
-std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
-                                                        std::span<const Triangle> triangles);
+/// For each corner of `corners`, 3 triangle + k, where the blocks of its vertex with the next corner of the triangle
+/// and with the one behind that are in the row of the vertex, counted from the diagonal; 0 for what lies left of that.
+std::vector<std::uint16_t> CornerSlots(const BlockPattern& pattern, std::span<const Triangle> triangles,
+                                       std::span<const std::int32_t> corners);
 
 /// A sparse matrix of scalars in compressed rows, the columns of each row ascending.
 struct ScalarMatrix {
@@ -55,6 +56,11 @@ struct ScalarMatrix {
 };
 /// Appends a row of (column, value), in any order; entries of one column add up in the order in which they are given.
 void AppendRow(ScalarMatrix& matrix, std::vector<std::pair<std::int32_t, double>>& row);
+/// The same in memory of others.
+struct ScalarRows {
+  std::span<const std::int32_t> first, column;
+  std::span<const Real> value;
+};
 struct ScalarEntry {
   std::int32_t row = 0, column = 0;
   double value = 0;
@@ -80,15 +86,19 @@ struct ExtraRows {
 class SystemMatrix {
  public:
   explicit SystemMatrix(const Kernels& kernels = BestKernels()) : kernels_(&kernels) {}
+  /// Has that pattern, and is to be set up.
+  explicit SystemMatrix(BlockPattern pattern) : kernels_(&BestKernels()), pattern_(std::move(pattern)) {}
 
   /// `constant`: S, as large as `pattern`. `pinned`: per row, 1 where a vertex does not move; or nothing.
   /// Afterwards nothing allocates but SetExtra.
   void SetUp(BlockPattern pattern, const ScalarMatrix& constant, std::span<const std::uint8_t> pinned = {});
+  /// The same with the pattern that it has.
+  void SetUp(const ScalarMatrix& constant, std::span<const std::uint8_t> pinned);
 
   int rows() const { return pattern_.rows(); }
   const BlockPattern& pattern() const { return pattern_; }
   /// S without rows and columns of pinned vertices and without what lies within the pattern, which Reset puts there.
-  ScalarMatrix Rest() const;
+  ScalarRows Rest() const { return {restFirst_, restColumn_, restValue_}; }
   bool Pinned(int row) const { return !pinned_.empty() && pinned_[row]; }
 
   // In this order for each Newton step:

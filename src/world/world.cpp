@@ -106,7 +106,6 @@ struct World::Impl {
     std::vector<double> restLengths;   // of these
     std::vector<std::int32_t> pinned;  // ascending
     std::vector<Vec3> positions, previous, velocities;
-    std::vector<Vec3> lastFrame;
     std::vector<Vec3> forces;  // of this step, where the program has any
   };
 
@@ -155,7 +154,7 @@ void World::Impl::Configure(std::shared_ptr<const Scene> changed) {
 /// What the reader sees before the first frame.
 void World::Impl::Start() {
   for (Cloth& cloth : cloths) {
-    cloth.positions = cloth.previous = cloth.lastFrame = cloth.model.start;
+    cloth.positions = cloth.previous = cloth.model.start;
     cloth.velocities.assign(cloth.positions.size(), Vec3{});
   }
   report = {};
@@ -189,18 +188,24 @@ bool World::Impl::AskForces() {
 }
 
 void World::Impl::ReadState() {
+  double move = 0;  // squared
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     Cloth& cloth = cloths[c];
-    cloth.lastFrame.swap(cloth.positions);
-    engine->readState(engineState.get(), static_cast<int>(c), cloth.positions, cloth.previous);
+    std::vector<Vec3>& now = cloth.velocities;  // for a moment
+    engine->readState(engineState.get(), static_cast<int>(c), now, cloth.previous);
+    for (std::size_t v = 0; v < now.size(); ++v) {
+      const Vec3 way = now[v] - cloth.positions[v];
+      move = std::max(move, Dot(way, way));
+    }
+    cloth.positions = now;
     ComputeVelocities(cloth.positions, cloth.previous, scene->TimeStep(), cloth.velocities);
   }
+  report.greatestMove = std::sqrt(move);
 }
 
 /// Positions for the reader, and the statistics of the frame.
 void World::Impl::FinishStep() {
   ReadState();
-  double move = 0;  // squared
   report.kineticEnergy = report.potentialEnergy = 0;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const Cloth& cloth = cloths[c];
@@ -208,8 +213,6 @@ void World::Impl::FinishStep() {
     double kinetic = 0;  // twice
     Vec3 weighted;
     for (std::size_t v = 0; v < cloth.positions.size(); ++v) {
-      const Vec3 way = cloth.positions[v] - cloth.lastFrame[v];
-      move = std::max(move, Dot(way, way));
       kinetic += masses[v] * Dot(cloth.velocities[v], cloth.velocities[v]);
       weighted += cloth.positions[v] * masses[v];
     }
@@ -217,7 +220,6 @@ void World::Impl::FinishStep() {
     report.potentialEnergy -= Dot(scene->simulation.gravity, weighted);
   }
   report.elasticEnergy = engine->elasticEnergy(engineState.get());
-  report.greatestMove = std::sqrt(move);
   const EngineCounts counts = engine->takeCounts(engineState.get());
   report.selfContacts = counts.selfContacts;
   report.colliderContacts = counts.colliderContacts;

@@ -31,17 +31,17 @@ struct Triangles {
       const auto vertex = [&] { return static_cast<std::int32_t>(random.Next() % x.size()); };
       const std::int32_t a = vertex();
       triangles.push_back({a, t % 7 == 3 ? a : vertex(), t % 5 == 2 ? a : vertex()});
-      rest.push_back(t % 11 == 6 ? RestTriangle<double>{}
-                                 : MakeRestTriangle({0, 0}, {1 + 0.3 * unit(), unit()}, {0.5 * unit(), 1.0}));
+      chartTriangles.push_back({3 * t + 1, 3 * t, 3 * t + 2});
+      const Vec2 b{1 + 0.3 * unit(), unit()}, c{0.5 * unit(), 1.0};
+      chart.insert(chart.end(), {b, Vec2{0, 0}, t % 11 == 6 ? b : c});
+      const auto corner = [&](std::int32_t p) { return MaterialPoint{chart[Index(p)].x, chart[Index(p)].y}; };
+      rest.push_back(MakeRestTriangle(corner(3 * t + 1), corner(3 * t), corner(3 * t + 2)));
+      strength.push_back(1 + t % 3);
+      rest.back().area *= strength.back();
     }
     const std::size_t padded = Index(count + kTrianglePad);
-    for (std::vector<double>* array :
-         {&area, &inverse[0], &inverse[1], &inverse[2], &inverse[3], &start[0], &start[1], &start[2], &buckling}) {
-      array->assign(padded, 0);
-    }
+    for (std::vector<double>* array : {&start[0], &start[1], &start[2], &buckling}) array->assign(padded, 0);
     for (std::size_t t = 0; t < rest.size(); ++t) {
-      area[t] = rest[t].area;
-      for (std::size_t k = 0; k < 4; ++k) inverse[k][t] = rest[t].inverse[k];
       for (std::vector<double>& strain : start) strain[t] = 0.1 * unit();
       buckling[t] = random.NextUnit();
     }
@@ -54,8 +54,9 @@ struct Triangles {
             .end = end,
             .triangles = triangles.data(),
             .x = x.data(),
-            .area = area.data(),
-            .inverse = {inverse[0].data(), inverse[1].data(), inverse[2].data(), inverse[3].data()},
+            .chartTriangles = chartTriangles.data(),
+            .chart = chart.data(),
+            .strength = strength.data(),
             .law = law,
             .orthotropic = orthotropic,
             .neoHookean = neoHookean,
@@ -75,8 +76,10 @@ struct Triangles {
   SplitMix64 random{5};
   std::vector<Vec3> x;
   std::vector<Triangle> triangles;
-  std::vector<RestTriangle<double>> rest;
-  std::vector<double> area, inverse[4], start[3], buckling;
+  std::vector<RestTriangle<double>> rest;  // area times strength
+  std::vector<Triangle> chartTriangles;
+  std::vector<Vec2> chart;
+  std::vector<double> strength, start[3], buckling;
   StVenantKirchhoff<double> orthotropic{300, 60, 200, 100, 0.2, 0.3, 1000, 2000};
   StableNeoHookean<double> neoHookean = NeoHookeanMembrane(261, 0.24);
   std::vector<Vec3> gradient;
@@ -266,14 +269,13 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
 TEST_CASE("the matrix is the sum of the triangles' blocks") {
   const test::Sheet sheet = test::Disc(4);
   const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);
-  const auto blocksOf = TriangleBlocks(pattern, sheet.triangles);
+  const auto blocksOf = test::TriangleBlocks(pattern, sheet.triangles);
   const std::size_t blocks = Index(pattern.blocks()), parts = 3 * sheet.triangles.size();
-  Lists same = ListBy(pattern.blocks(), parts, [&](std::size_t e) { return blocksOf[e / 3][e % 3 * 3 + (e + 1) % 3]; });
-  Lists transposed =
-      ListBy(pattern.blocks(), parts, [&](std::size_t e) { return blocksOf[e / 3][(e + 1) % 3 * 3 + e % 3]; });
-  for (Lists* lists : {&same, &transposed}) {
-    for (std::int32_t& e : lists->entry) e = e / 3 * kHessianReals + e % 3 * 9;
-  }
+  const Lists corners = ListBy(sheet.vertices(), parts, [&](std::size_t e) {
+    const Triangle& t = sheet.triangles[e / 3];
+    return e % 3 == 0 ? t.a : e % 3 == 1 ? t.b : t.c;
+  });
+  const std::vector<std::uint16_t> slots = CornerSlots(pattern, sheet.triangles, corners.entry);
   SplitMix64 random(3);
   RealVector hessian(kHessianReals * sheet.triangles.size(), 0);
   for (Real& entry : hessian) entry = static_cast<Real>(2 * random.NextUnit() - 1);
@@ -309,14 +311,13 @@ TEST_CASE("the matrix is the sum of the triangles' blocks") {
     for (const int begin : {0, 20}) {
       kernels->assemble({.begin = begin,
                          .end = begin == 0 ? 20 : sheet.vertices(),
-                         .first = pattern.first.data(),
-                         .column = pattern.column.data(),
                          .storedFirst = storedFirst.data(),
                          .constant = constant.data(),
-                         .sameFirst = same.first.data(),
-                         .same = same.entry.data(),
-                         .transposedFirst = transposed.first.data(),
-                         .transposed = transposed.entry.data(),
+                         .cornerFirst = corners.first.data(),
+                         .corner = corners.entry.data(),
+                         .slot = slots.data(),
+                         .firstTriangle = 0,
+                         .triangles = static_cast<int>(sheet.triangles.size()),
                          .hessian = hessian.data(),
                          .blocks = filled.data()});
     }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -106,8 +107,8 @@ struct Solver : System {
 
   RealVector Solve(const RealVector& b, SolveResult& result, const SolveSettings& settings,
                    const Executor& executor = Serial()) {
-    RealVector x(VectorLength(matrix.rows()), 0);
-    result = gradient.Solve(matrix, multigrid, b.data(), x.data(), settings, executor);
+    RealVector x(VectorLength(matrix.rows()), 0), residual = b;
+    result = gradient.Solve(matrix, multigrid, residual.data(), x.data(), settings, executor);
     return x;
   }
   int Iterations(const RealVector& b, double tolerance) {
@@ -147,10 +148,18 @@ TEST_CASE("blocks are where the corners of triangles say") {
   CHECK(pattern.Find(0, 24) >= 0);
   CHECK(pattern.Find(24, 0) >= 0);
   CHECK(pattern.Find(0, 23) == -1);
-  const auto blocks = TriangleBlocks(pattern, sheet.triangles);
-  for (std::size_t t = 0; t < blocks.size(); ++t) {
-    const int corners[3] = {sheet.triangles[t].a, sheet.triangles[t].b, sheet.triangles[t].c};
-    for (int k = 0; k < 9; ++k) CHECK(blocks[t][k] == pattern.Find(corners[k / 3], corners[k % 3]));
+  std::vector<std::int32_t> corners(3 * sheet.triangles.size());
+  std::iota(corners.begin(), corners.end(), 0);
+  const std::vector<std::uint16_t> slots = CornerSlots(pattern, sheet.triangles, corners);
+  REQUIRE(slots.size() == 2 * corners.size());
+  for (const std::int32_t corner : corners) {
+    const Triangle& t = sheet.triangles[corner / 3];
+    const std::int32_t vertices[3] = {t.a, t.b, t.c}, row = vertices[corner % 3];
+    for (const int ahead : {1, 2}) {
+      const std::int32_t block = pattern.Find(row, row) + slots[2 * corner + ahead - 1];
+      const std::int32_t other = vertices[(corner + ahead) % 3];
+      CHECK(pattern.column[block] == std::max(row, other));
+    }
   }
 }
 
@@ -307,13 +316,13 @@ TEST_CASE("contacts alone can be filled anew") {
   const Sheet sheet = Square(40);
   Solver solver(sheet, true, {}, RemotePairs(sheet, 100, 1000));
   const RealVector b = RandomVector(sheet.vertices(), 3, sheet.pinned);
-  RealVector whole(VectorLength(sheet.vertices()), 0), part = whole;
+  RealVector whole(VectorLength(sheet.vertices()), 0), part = whole, scratch = whole;
   for (const int pairs : {300, 0, 20}) {
     solver.Fill(sheet, Serial(), {}, RemotePairs(sheet, pairs, 500));
     solver.multigrid.RefillExtra(solver.matrix, Serial());
-    solver.multigrid.Apply(solver.matrix, b.data(), part.data(), Serial());
+    solver.multigrid.Apply(solver.matrix, b.data(), part.data(), scratch.data(), Serial());
     solver.multigrid.Refill(solver.matrix, Serial());
-    solver.multigrid.Apply(solver.matrix, b.data(), whole.data(), Serial());
+    solver.multigrid.Apply(solver.matrix, b.data(), whole.data(), scratch.data(), Serial());
     CHECK(part == whole);
   }
 }
@@ -326,10 +335,10 @@ TEST_CASE("a cycle is a symmetric and positive definite operator, and close to t
       Solver solver(sheet, material, {}, RemotePairs(sheet, pairs, 261));
       REQUIRE(solver.multigrid.levels() >= 1);
       Dense cycle(3 * n, 3 * n);
-      RealVector unit(VectorLength(n), 0), z = unit;
+      RealVector unit(VectorLength(n), 0), z = unit, scratch = unit;
       for (int k = 0; k < 3 * n; ++k) {
         unit[k] = 1;
-        solver.multigrid.Apply(solver.matrix, unit.data(), z.data(), Serial());
+        solver.multigrid.Apply(solver.matrix, unit.data(), z.data(), scratch.data(), Serial());
         unit[k] = 0;
         cycle.col(k) = ToEigen(z, n);
       }

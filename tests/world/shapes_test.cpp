@@ -187,9 +187,9 @@ TEST_CASE("Patches change the material where they lie, and several multiply") {
     REQUIRE_MESSAGE(CheckScene(scene).empty(), Errors(scene));
     fabric::FabricModel model = Model(scene);
     double area = 0, inside = 0;
-    for (std::size_t t = 0; t < model.rest.size(); ++t) {
-      area += model.rest[t].area;
-      if (model.strength[t] == 3) inside += model.rest[t].area;
+    for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+      area += model.Rest(t).area;
+      if (model.strength[t] == 3) inside += model.Rest(t).area;
     }
     const double share = inside / area;
     CHECK(Mass(model) == doctest::Approx((1 + share) * mass).epsilon(1e-9));
