@@ -85,6 +85,9 @@ struct Words {
 inline Words LoadWords(const std::uint64_t* p) {
   return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))};
 }
+inline void StoreWords(std::uint64_t* p, Words a) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v);
+}
 inline Words AllWords(std::uint64_t s) {
   return {_mm256_set1_epi64x(static_cast<long long>(s))};
 }

@@ -84,6 +84,9 @@ struct Words {
 inline Words LoadWords(const std::uint64_t* p) {
   return {_mm512_loadu_si512(p)};
 }
+inline void StoreWords(std::uint64_t* p, Words a) {
+  _mm512_storeu_si512(p, a.v);
+}
 inline Words AllWords(std::uint64_t s) {
   return {_mm512_set1_epi64(static_cast<long long>(s))};
 }
@@ -190,9 +193,11 @@ inline WideFloats AllWide(float s) {
 inline WideFloats operator-(WideFloats a, WideFloats b) {
   return {_mm512_sub_ps(a.v, b.v)};
 }
-inline unsigned AtMost(WideFloats x, WideFloats y, WideFloats z, float squared) {
-  const __m512 sum = _mm512_fmadd_ps(x.v, x.v, _mm512_fmadd_ps(y.v, y.v, _mm512_mul_ps(z.v, z.v)));
-  return _mm512_cmp_ps_mask(sum, _mm512_set1_ps(squared), _CMP_LE_OQ);
+inline WideFloats SquaredLength(WideFloats x, WideFloats y, WideFloats z) {
+  return {_mm512_fmadd_ps(x.v, x.v, _mm512_fmadd_ps(y.v, y.v, _mm512_mul_ps(z.v, z.v)))};
+}
+inline unsigned AtMost(WideFloats a, float bound) {
+  return _mm512_cmp_ps_mask(a.v, _mm512_set1_ps(bound), _CMP_LE_OQ);
 }
 /// Those of the first `count` numbers that have a bit, in order, and behind them `rest`, up to eight numbers.
 /// More than eight need not be right; room for `count` and for eight is written to.
