@@ -19,9 +19,6 @@ inline Words Parts(const double* x, Pack perMetre) {
 inline unsigned IsDoubtful(Words parts) {
   return Below((parts + AllWords(1)) & AllWords(kPartMask), AllWords(3));
 }
-inline Words Index(Words parts) {
-  return Down<kPartBits>(parts) & AllWords(kIndexMask);
-}
 
 /// floor(coordinate / size) in the low bits of a key.
 inline std::uint64_t ExactIndex(double coordinate, double size) {
@@ -58,7 +55,9 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
     if (begin + kLanes <= a.count) {
       const Words x = Parts(a.x[0] + begin, perMetre[0]), y = Parts(a.x[1] + begin, perMetre[1]),
                   z = Parts(a.x[2] + begin, perMetre[2]);
-      const Words key = Index(x) | Up<kIndexBits>(Index(y)) | Up<2 * kIndexBits>(Index(z));
+      const Words key = (Down<kPartBits>(x) & AllWords(kIndexMask)) |
+                        (Down<kPartBits - kIndexBits>(y) & AllWords(kIndexMask << kIndexBits)) |
+                        (Up<2 * kIndexBits - kPartBits>(z) & AllWords(kIndexMask << 2 * kIndexBits));
       const Words top = AllWords(kRounderTop << 52);  // sums that do not have it are beyond 2^51 parts
       doubts = IsDoubtful(x) | IsDoubtful(y) | IsDoubtful(z);
       doubts |= Differ(Down<52>((x ^ top) | (y ^ top) | (z ^ top)), AllWords(0));

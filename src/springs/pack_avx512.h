@@ -149,18 +149,16 @@ inline std::uint64_t BytePerLane(const Mask masks[6]) {
 /// the divider.
 inline bool QuickSqrt(const Pack a[6], Pack roots[6]) {
   constexpr int kQuick = 3;  // 0 to 2 and 4 to 6 are 5 to 15 % slower, on Zen 4
-  // Normal numbers whose roots' residuals do not underflow.
-  const __m512i least = _mm512_castpd_si512(_mm512_set1_pd(0x1p-900)), span = _mm512_set1_epi64(1800LL << 52);
+  // Residuals of quick roots between these do not underflow; of no number may the root be zero, for whose
+  // springs there is no direction. Least and greatest leave the multipliers free, which comparisons do not.
+  __m512d least = a[0].v, greatest = a[0].v;
+  for (int s = 1; s < 6; ++s) least = _mm512_min_pd(least, a[s].v);
+  for (int s = 1; s < kQuick; ++s) greatest = _mm512_max_pd(greatest, a[s].v);
+  unsigned outside = _mm512_cmp_pd_mask(least, _mm512_set1_pd(0x1p-900), _CMP_NGE_UQ);
+  outside |= _mm512_cmp_pd_mask(greatest, _mm512_set1_pd(0x1p900), _CMP_NLE_UQ);
   const __m512i part = _mm512_set1_epi64((1LL << 52) - 1), first = _mm512_set1_epi64(1);
-  unsigned outside = 0;
   for (int s = 0; s < kQuick; ++s) {
-    const __m512i bits = _mm512_castpd_si512(a[s].v);
-    outside |= _mm512_cmpgt_epu64_mask(_mm512_sub_epi64(bits, least), span);
-    outside |= _mm512_cmpeq_epi64_mask(_mm512_and_si512(bits, part), first);
-  }
-  // The others may only not be zero, for whose springs there is no direction.
-  for (int s = kQuick; s < 6; ++s) {
-    outside |= _mm512_cmp_pd_mask(a[s].v, _mm512_setzero_pd(), _CMP_NGT_UQ);
+    outside |= _mm512_cmpeq_epi64_mask(_mm512_and_si512(_mm512_castpd_si512(a[s].v), part), first);
   }
   if (outside != 0) return false;
   const __m512d half = _mm512_set1_pd(0.5);
