@@ -17,7 +17,7 @@ inline Words Parts(const double* x, Pack perMetre) {
 }
 /// Whether the exact coordinate may be on the other side of a whole number.
 inline unsigned IsDoubtful(Words parts) {
-  return Below((parts + AllWords(1)) & AllWords(kPartMask), AllWords(3));
+  return Lack(parts + AllWords(1), AllWords(kPartMask - 3));  // from one part below to two above
 }
 
 /// floor(coordinate / size) in the low bits of a key.
@@ -59,10 +59,11 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
                         (Down<kPartBits - kIndexBits>(y) & AllWords(kIndexMask << kIndexBits)) |
                         (Up<2 * kIndexBits - kPartBits>(z) & AllWords(kIndexMask << 2 * kIndexBits));
       const Words top = AllWords(kRounderTop << 52);  // sums that do not have it are beyond 2^51 parts
+      const Words beyond = Down<52>((x ^ top) | (y ^ top) | (z ^ top));
       doubts = IsDoubtful(x) | IsDoubtful(y) | IsDoubtful(z);
-      doubts |= Differ(Down<52>((x ^ top) | (y ^ top) | (z ^ top)), AllWords(0));
-      changes = doubts | Differ(key, LoadWords(a.key + begin));
+      changes = doubts | Differ((key ^ LoadWords(a.key + begin)) | beyond, AllWords(0));
       if (changes == 0) continue;
+      doubts |= Differ(beyond, AllWords(0));
       StoreWords(keys, key);
     } else {
       changes = doubts = (1u << (a.count - begin)) - 1;

@@ -113,12 +113,12 @@ template <int bits>
 inline Words Up(Words a) {
   return {_mm512_slli_epi64(a.v, bits)};
 }
-/// One bit per lane. Below: of numbers less than 2^63.
+/// One bit per lane. Lack: where none of those bits is set.
 inline unsigned Differ(Words a, Words b) {
   return _mm512_cmpneq_epi64_mask(a.v, b.v);
 }
-inline unsigned Below(Words a, Words b) {
-  return _mm512_cmplt_epi64_mask(a.v, b.v);
+inline unsigned Lack(Words a, Words bits) {
+  return _mm512_testn_epi64_mask(a.v, bits.v);
 }
 /// from[index[lane]].
 inline Pack Gather(const double* from, const std::int32_t* index) {
@@ -131,11 +131,10 @@ inline Pack MaybeFused(Pack a, Pack b, Pack c) {
 }
 /// One byte per lane, with a bit for each of six masks.
 inline std::uint64_t BytePerLane(const Mask masks[6]) {
-  __m128i bytes = _mm_setzero_si128();
-  for (int m = 0; m < 6; ++m) {
-    bytes = _mm_or_si128(bytes, _mm_maskz_set1_epi8(masks[m].v, static_cast<char>(1 << m)));
-  }
-  return static_cast<std::uint64_t>(_mm_cvtsi128_si64(bytes));
+  constexpr std::uint64_t kBytes = 0x0101010101010101;
+  std::uint64_t bytes = 0;
+  for (int m = 0; m < 6; ++m) bytes |= _pdep_u64(masks[m].v, kBytes << m);
+  return bytes;
 }
 /// Six roots side by side, each rounded correctly as by Sqrt. Half of them come without the divider, which
 /// else would take longer than all other work on a spring. Returns false, and no roots, where that is

@@ -121,8 +121,8 @@ inline Words Up(Words a) {
 inline unsigned Differ(Words a, Words b) {
   return Bits(Mask{{a.v[0] != b.v[0], a.v[1] != b.v[1], a.v[2] != b.v[2], a.v[3] != b.v[3]}});
 }
-inline unsigned Below(Words a, Words b) {
-  return Bits(Mask{{a.v[0] < b.v[0], a.v[1] < b.v[1], a.v[2] < b.v[2], a.v[3] < b.v[3]}});
+inline unsigned Lack(Words a, Words bits) {
+  return Differ(a & bits, AllWords(0)) ^ 15;
 }
 inline Pack Gather(const double* from, const std::int32_t* index) {
   return Each([&](int i) { return from[index[i]]; });
