@@ -9,12 +9,12 @@ namespace {
 
 constexpr int kSmallestTable = 6;  // bits
 constexpr int kMostEmpty = 5;      // at most one bucket of that many is empty: readers stumble over them
-// Room of a bucket: more than its members, so that few outgrow it.
+// Room of a bucket: more than its members, so that few outgrow it; and the padding.
 constexpr std::int32_t Room(std::int32_t members) {
-  return (members + 1 + BoxMap::kPadding - 1) / BoxMap::kPadding * BoxMap::kPadding;
+  return (members + 1 + 2 * BoxMap::kPadding - 1) / BoxMap::kPadding * BoxMap::kPadding;
 }
-constexpr int kMostRoom = 8;  // no bucket has more room than this times its members ...
-constexpr int kAllRoom = 10;  // ... and so there is room for 2 per point where outgrown buckets go
+constexpr int kMostRoom = 16;  // no bucket has more room than this times its members ...
+constexpr int kAllRoom = 18;   // ... and so there is room for 2 per point where outgrown buckets go
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -35,7 +35,7 @@ void BoxMap::Reserve(int points) {
   count_.resize(2 * count + 1);
   capacity_.resize(2 * count + 1);
   static_assert(Room(1) <= kMostRoom && Room(2) <= 2 * kMostRoom);
-  members_.assign(kAllRoom * count + 1, 0);  // `Remove` reads one more than the last bucket's room
+  members_.assign(kAllRoom * count, 0);
 }
 
 void BoxMap::Build(std::span<const std::uint64_t> keys) {
@@ -44,8 +44,8 @@ void BoxMap::Build(std::span<const std::uint64_t> keys) {
   membersEnd_ = 0;
   for (std::size_t b = 0; b < Index(bucketCount_); ++b) {
     first_[b] = membersEnd_;
-    capacity_[b] = Room(count_[b]);
-    membersEnd_ += capacity_[b];
+    capacity_[b] = Room(count_[b]) - kPadding;
+    membersEnd_ += Room(count_[b]);
     count_[b] = 0;
   }
   for (std::size_t p = 0; p < keys.size(); ++p) {
@@ -55,15 +55,11 @@ void BoxMap::Build(std::span<const std::uint64_t> keys) {
   for (std::size_t b = 0; b < Index(bucketCount_); ++b) SetCount(b, count_[b]);
 }
 
-// Loops over members go by whole blocks: nobody can predict how many there are.
-
 /// Sets a bucket's number of members, and pads them.
 void BoxMap::SetCount(std::size_t bucket, std::int32_t count) {
   count_[bucket] = count;
   std::int32_t* const members = members_.data() + first_[bucket];
-  std::int32_t* const last = members + (count > 0 ? count - 1 : 0) / kPadding * kPadding;
-  const std::int32_t padding = members[0], left = count - static_cast<std::int32_t>(last - members);
-  for (std::int32_t i = 0; i < kPadding; ++i) last[i] = i < left ? last[i] : padding;
+  std::fill_n(members + count, kPadding, members[0]);
 }
 
 /// Where the key is, or the empty slot where it goes.
@@ -119,14 +115,12 @@ void BoxMap::Update(std::span<const std::uint64_t> keys, std::span<const std::in
 
 void BoxMap::Remove(std::int32_t bucket, std::int32_t point) {
   const std::size_t b = Index(bucket);
-  const std::int32_t count = count_[b];
   std::int32_t* const members = members_.data() + first_[b];
-  // Those from the point on give way to the next.
-  for (std::int32_t block = 0; block < count; block += kPadding) {
-    for (std::int32_t i = block; i < block + kPadding; ++i) members[i] = members[i + (members[i] >= point ? 1 : 0)];
-  }
-  SetCount(b, count - 1);
-  emptyCount_ += count == 1 ? 1 : 0;
+  // Those behind the point move up.
+  std::int32_t at = count_[b] - 1;
+  for (std::int32_t next = members[at]; next != point;) std::swap(members[--at], next);
+  SetCount(b, count_[b] - 1);
+  emptyCount_ += count_[b] == 0 ? 1 : 0;
 }
 
 /// Returns false when there is no room.
@@ -142,25 +136,19 @@ bool BoxMap::Insert(std::uint64_t key, std::int32_t point) {
   if (count_[b] == 0) --emptyCount_;
   if (count_[b] == capacity_[b]) {
     const std::int32_t room = Room(2 * count_[b]);
-    if (Index(membersEnd_ + room) >= members_.size()) return false;
+    if (Index(membersEnd_ + room) > members_.size()) return false;
     std::copy_n(members_.data() + first_[b], count_[b], members_.data() + membersEnd_);
     first_[b] = membersEnd_;
-    capacity_[b] = room;
+    capacity_[b] = room - kPadding;
     membersEnd_ += room;
   }
   bucketOf_[Index(point)] = slot.bucket;
-  // In order: each place gets the member there, or the point, or the member before it.
+  // Those that are to stand behind the point move down.
   std::int32_t* const members = members_.data() + first_[b];
-  const std::int32_t count = count_[b];
-  std::int32_t before = -1;
-  for (std::int32_t block = 0; block <= count; block += kPadding) {
-    for (std::int32_t i = block; i < block + kPadding; ++i) {
-      const std::int32_t here = i < count ? members[i] : point;
-      members[i] = std::max(before, std::min(here, point));
-      before = here;
-    }
-  }
-  SetCount(b, count + 1);
+  std::int32_t at = count_[b];
+  for (; at > 0 && members[at - 1] > point; --at) members[at] = members[at - 1];
+  members[at] = point;
+  SetCount(b, count_[b] + 1);
   return true;
 }
 

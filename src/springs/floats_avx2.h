@@ -23,10 +23,16 @@ inline FloatPack Turn(FloatPack a) {
       _mm256_permutevar8x32_ps(a.v, _mm256_setr_epi32(turn % 8, (turn + 1) % 8, (turn + 2) % 8, (turn + 3) % 8,
                                                       (turn + 4) % 8, (turn + 5) % 8, (turn + 6) % 8, (turn + 7) % 8))};
 }
-/// A bit for each lane in which a vector's square is at most that.
-inline unsigned AtMost(FloatPack x, FloatPack y, FloatPack z, float squared) {
-  const __m256 sum = _mm256_fmadd_ps(x.v, x.v, _mm256_fmadd_ps(y.v, y.v, _mm256_mul_ps(z.v, z.v)));
-  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(sum, _mm256_set1_ps(squared), _CMP_LE_OQ)));
+inline FloatPack Least(FloatPack a, FloatPack b) {
+  return {_mm256_min_ps(a.v, b.v)};
+}
+/// Of vectors, one per lane.
+inline FloatPack SquaredLength(FloatPack x, FloatPack y, FloatPack z) {
+  return {_mm256_fmadd_ps(x.v, x.v, _mm256_fmadd_ps(y.v, y.v, _mm256_mul_ps(z.v, z.v)))};
+}
+/// A bit for each lane with such a number.
+inline unsigned AtMost(FloatPack a, float bound) {
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, _mm256_set1_ps(bound), _CMP_LE_OQ)));
 }
 /// from[index[lane]] - origin for the first `count` lanes, and numbers far from all others in the rest.
 /// All eight must be indices.

@@ -23,6 +23,9 @@ std::int64_t CollideSphere(const ColliderArgs& a) {
   return total;
 }
 
+/// A point that much above a plane is above it, however its height is rounded [m]: coordinates within bounds, of at
+/// most 1e6 m, round by less than 1e-9 m.
+constexpr double kSureHeight = 1e-6;
 constexpr double kPlaneOffset = 1e-4;  // m above the plane, on the side that a point came from
 enum { kInterpolate, kOffset, kHold };
 
@@ -32,14 +35,24 @@ inline Pack Height(const ColliderArgs& a, const Pack3& x) {
          (x.z - All(a.origin[2])) * All(a.normal[2]);
 }
 
+/// Height plus `start`, to within rounding, in fewer steps.
+inline Pack RoughHeight(const Pack3& normal, const Pack3& x, Pack start) {
+  return MaybeFused(x.x, normal.x, MaybeFused(x.y, normal.y, MaybeFused(x.z, normal.z, start)));
+}
+
 template <int response>
 std::int64_t CollidePlaneBy(const ColliderArgs& a) {
   const Pack3 normal = {All(a.normal[0]), All(a.normal[1]), All(a.normal[2])};
   const Pack keep = All(1 - a.friction);
+  double start = -kSureHeight;
+  for (int axis = 0; axis < 3; ++axis) start -= a.normal[axis] * a.origin[axis] + kSureHeight * fabs(a.origin[axis]);
   std::int64_t total = 0;
   for (std::int64_t p = a.begin; p < a.end; p += kLanes) {
     const int count = a.end - p < kLanes ? static_cast<int>(a.end - p) : kLanes;
     const Pack3 previous = LoadFirst3(a.previous, p, count), x = LoadFirst3(a.x, p, count);
+    const Mask surelyAbove =
+        (RoughHeight(normal, previous, All(start)) > All(0)) & (RoughHeight(normal, x, All(start)) > All(0));
+    if (Bits(surelyAbove) == (1u << kLanes) - 1) continue;
     const Pack before = Height(a, previous), after = Height(a, x);
     const Mask above = All(0) <= before, stays = All(0) <= after;
     const Mask crossed = FirstLanes(count) & (above ^ stays);

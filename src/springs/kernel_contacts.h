@@ -17,10 +17,7 @@ inline Words Parts(const double* x, Pack perMetre) {
 }
 /// Whether the exact coordinate may be on the other side of a whole number.
 inline unsigned IsDoubtful(Words parts) {
-  return Below((parts + AllWords(1)) & AllWords(kPartMask), AllWords(3));
-}
-inline Words Index(Words parts) {
-  return Down<kPartBits>(parts) & AllWords(kIndexMask);
+  return Lack(parts + AllWords(1), AllWords(kPartMask - 3));  // from one part below to two above
 }
 
 /// floor(coordinate / size) in the low bits of a key.
@@ -31,6 +28,21 @@ inline std::uint64_t ExactIndex(double coordinate, double size) {
   return bits & kIndexMask;
 }
 
+/// The floor of a point's coordinates in boxes, as a key.
+inline std::uint64_t ExactKey(const BoxKeyArgs& a, int p) {
+  std::uint64_t key = 0;
+  for (int axis = 0; axis < 3; ++axis) key |= ExactIndex(a.x[axis][p], a.boxSize[axis]) << kIndexBits * axis;
+  return key;
+}
+/// Whether a point is so far out that its indices come round.
+inline bool Wraps(const BoxKeyArgs& a, int p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = a.x[axis][p], end = kIndexEnd * a.boxSize[axis];
+    if (!(at < end && at > -end)) return true;
+  }
+  return false;
+}
+
 std::int64_t BoxKeys(const BoxKeyArgs& a) {
   std::int64_t changed = 0;
   Pack perMetre[3];
@@ -38,26 +50,28 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
     perMetre[axis] = All(static_cast<double>(std::uint64_t{1} << kPartBits) / a.boxSize[axis]);
   }
   for (int begin = 0; begin < a.count; begin += kLanes) {
-    unsigned look = 0;  // a bit for each point whose key may have changed
+    std::uint64_t keys[kLanes];
+    unsigned changes = 0, doubts = 0;  // a bit for each point whose key changed, or may have
     if (begin + kLanes <= a.count) {
       const Words x = Parts(a.x[0] + begin, perMetre[0]), y = Parts(a.x[1] + begin, perMetre[1]),
                   z = Parts(a.x[2] + begin, perMetre[2]);
-      const Words key = Index(x) | Up<kIndexBits>(Index(y)) | Up<2 * kIndexBits>(Index(z));
+      const Words key = (Down<kPartBits>(x) & AllWords(kIndexMask)) |
+                        (Down<kPartBits - kIndexBits>(y) & AllWords(kIndexMask << kIndexBits)) |
+                        (Up<2 * kIndexBits - kPartBits>(z) & AllWords(kIndexMask << 2 * kIndexBits));
       const Words top = AllWords(kRounderTop << 52);  // sums that do not have it are beyond 2^51 parts
-      look = IsDoubtful(x) | IsDoubtful(y) | IsDoubtful(z);
-      look |= Differ(Down<52>((x ^ top) | (y ^ top) | (z ^ top)), AllWords(0));
-      look |= Differ(key, LoadWords(a.key + begin));
+      const Words beyond = Down<52>((x ^ top) | (y ^ top) | (z ^ top));
+      doubts = IsDoubtful(x) | IsDoubtful(y) | IsDoubtful(z);
+      changes = doubts | Differ((key ^ LoadWords(a.key + begin)) | beyond, AllWords(0));
+      if (changes == 0) continue;
+      doubts |= Differ(beyond, AllWords(0));
+      StoreWords(keys, key);
     } else {
-      look = (1u << (a.count - begin)) - 1;
+      changes = doubts = (1u << (a.count - begin)) - 1;
     }
-    for (; look != 0; look &= look - 1) {
-      const int p = begin + LowestBit(look);
-      std::uint64_t key = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double at = a.x[axis][p], size = a.boxSize[axis];
-        key |= ExactIndex(at, size) << kIndexBits * axis;
-        if (!(at < kIndexEnd * size && at > -kIndexEnd * size)) *a.wraps = 1;
-      }
+    for (; changes != 0; changes &= changes - 1) {
+      const int lane = LowestBit(changes), p = begin + lane;
+      const std::uint64_t key = (doubts >> lane & 1) != 0 ? ExactKey(a, p) : keys[lane];
+      if (Wraps(a, p)) *a.wraps = 1;
       if (key == a.key[p]) continue;
       a.key[p] = key;
       a.changed[changed++] = a.firstPoint + p;
@@ -65,6 +79,12 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
   }
   return changed;
 }
+
+/// Squares of distances between points, in float, with room for what that rounds [m^2].
+struct Reach {
+  float push;  ///< Points push each other that are as near,
+  float near;  ///< and may do so after others have moved.
+};
 
 /// Which points of a bucket may come too close to which others while they move.
 struct NearPoints {
@@ -78,11 +98,11 @@ struct NearPoints {
   int others[kMost];                            // per row, how many there are
   int next = 0, end = 0;                        // rows whose points did not move yet
 
-  bool Find(const BucketArgs& a, const std::int32_t* members, int count, float squared);
+  bool Find(const BucketArgs& a, const std::int32_t* members, int count, Reach reach);
 };
 
 /// Returns false when a point is near more others than a row can hold.
-inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, int count, float squared) {
+inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, int count, Reach reach) {
   alignas(64) float x[3][kMost];  // relative to the first
   next = end = 0;
   const auto gather = [&](int m) {
@@ -94,38 +114,46 @@ inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, i
     return FloatPack3{LoadFloats(x[0] + m), LoadFloats(x[1] + m), LoadFloats(x[2] + m)};
   };
   const auto alone = [&](int m) { return FloatPack3{AllFloats(x[0][m]), AllFloats(x[1][m]), AllFloats(x[2][m])}; };
-  const auto anyWithin = [&](const FloatPack3& points) {
-    return Within(points, Turn<1>(points), squared) | Within(points, Turn<2>(points), squared) |
-           Within(points, Turn<3>(points), squared) | Within(points, Turn<4>(points), squared);
-  };
 
-  // Most buckets are few points that lie flat, with no two near each other.
+  // Most buckets are few points that lie flat, three by three, and none pushes another: then none moves.
   gather(0);
-  if (count <= kFloatLanes) {
-    if (anyWithin(block(0)) == 0) return true;
-  } else if (count == kFloatLanes + 1) {  // three by three
-    const std::int32_t last = members[kFloatLanes];
+  if (count <= kFloatLanes + 1) {
+    const std::int32_t last = members[count > kFloatLanes ? kFloatLanes : 0];
     for (int axis = 0; axis < 3; ++axis) {
-      x[axis][kFloatLanes] = static_cast<float>(a.x[axis][last] - a.x[axis][members[0]]);
+      const float at = static_cast<float>(a.x[axis][last] - a.x[axis][members[0]]);
+      x[axis][kFloatLanes] = count > kFloatLanes ? at : 9e15f;  // far from all others
     }
     const FloatPack3 points = block(0);
-    if ((anyWithin(points) | Within(points, alone(kFloatLanes), squared)) == 0) return true;
+    const FloatPack least =
+        Least(Least(Least(SquaredDistance(points, Turn<1>(points)), SquaredDistance(points, Turn<2>(points))),
+                    Least(SquaredDistance(points, Turn<3>(points)), SquaredDistance(points, Turn<4>(points)))),
+              SquaredDistance(points, alone(kFloatLanes)));
+    if (AtMost(least, reach.push) == 0) return true;
   }
   int m = kFloatLanes;
   for (; m < count; m += kFloatLanes) gather(m);
-  std::uint64_t near[kMost], todo = 0;
+  std::uint64_t near[kMost], todo = 0, pushed = 0;
   for (m = 0; m < count; ++m) {
-    std::uint64_t bits = 0;
+    std::uint64_t nearBits = 0, pushBits = 0;
     int other = 0;
     for (; other + kFloatLanes < count; other += kWideLanes) {
-      bits |= std::uint64_t{AtMost(AllWide(x[0][m]) - LoadWide(x[0] + other), AllWide(x[1][m]) - LoadWide(x[1] + other),
-                                   AllWide(x[2][m]) - LoadWide(x[2] + other), squared)}
-              << other;
+      const WideFloats squares =
+          SquaredLength(AllWide(x[0][m]) - LoadWide(x[0] + other), AllWide(x[1][m]) - LoadWide(x[1] + other),
+                        AllWide(x[2][m]) - LoadWide(x[2] + other));
+      nearBits |= std::uint64_t{AtMost(squares, reach.near)} << other;
+      pushBits |= std::uint64_t{AtMost(squares, reach.push)} << other;
     }
-    if (other < count) bits |= std::uint64_t{Within(alone(m), block(other), squared)} << other;
-    near[m] = bits & ~(std::uint64_t{1} << m);
+    if (other < count) {
+      const FloatPack squares = SquaredDistance(alone(m), block(other));
+      nearBits |= std::uint64_t{AtMost(squares, reach.near)} << other;
+      pushBits |= std::uint64_t{AtMost(squares, reach.push)} << other;
+    }
+    const std::uint64_t notItself = ~(std::uint64_t{1} << m);
+    near[m] = nearBits & notItself;
     todo |= near[m];
+    pushed |= pushBits & notItself;
   }
+  if (pushed == 0) return true;
   int most = 0;
   for (; todo != 0; todo &= todo - 1, ++end) {
     m = LowestBit(todo);
@@ -268,8 +296,11 @@ std::int64_t SeparateBuckets(const BucketArgs& a) {
   // No point moves farther than a part in stepsPerFrame of the distance that it keeps: farther pairs
   // than that stay apart. Coordinates in float are off by 2^-24 of the span: rather look twice.
   const double farthest = a.greatestApart * (1 + 1 / a.stepsPerFrame);
-  const double floatFarthest = farthest * (1 + 1e-5) + 1e-6 * a.greatestSpan;
-  const float nearSquared = static_cast<float>(floatFarthest * floatFarthest) + 1e-30f;  // whatever underflows
+  const auto inFloat = [&](double distance) {
+    const double widest = distance * (1 + 1e-5) + 1e-6 * a.greatestSpan;
+    return static_cast<float>(widest * widest) + 1e-30f;  // whatever underflows
+  };
+  const Reach reach = {inFloat(a.greatestApart), inFloat(farthest)};
   const int mostNear = a.greatestSpan < kMostSpan ? NearPoints::kMost : 0;
   std::int64_t contacts = 0;
   PushLanes lanes;
@@ -279,7 +310,7 @@ std::int64_t SeparateBuckets(const BucketArgs& a) {
       const std::int32_t* members = a.members + a.first[bucket];
       const int count = a.count[bucket++];
       if (count < 2) continue;
-      if (count > mostNear || !lane.Find(a, members, count, nearSquared)) {
+      if (count > mostNear || !lane.Find(a, members, count, reach)) {
         contacts += SeparateMany(a, members, count, farthest);
         lane.end = 0;
       } else if (lane.end > 0) {

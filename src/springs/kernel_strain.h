@@ -4,13 +4,13 @@
 std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
   const std::int64_t n = a.numWidth, begin = a.rowBegin * n, end = a.rowEnd * n;
   const Steps step(n);
+  GridWalk walk(a.x, begin, step);
   std::uint64_t any = 0;
   for (std::int64_t p = begin; p < end; p += kLanes) {
-    const Pack3 x = Load3(a.x, p);
+    Pack3 d[kKinds];
+    walk.Next(a.x, p, step, d);
     Mask near[kKinds];
-    for (int kind = 0; kind < kKinds; ++kind) {
-      near[kind] = RoughSquare(Load3(a.x, p + step[kind]) - x) > Load(a.nearSquared[kind] + p);
-    }
+    for (int kind = 0; kind < kKinds; ++kind) near[kind] = RoughSquare(d[kind]) > Load(a.nearSquared[kind] + p);
     const std::uint64_t bytes = BytePerLane(near);
     any |= bytes;
     // What is beyond the last row belongs to others.
@@ -102,6 +102,20 @@ struct StrainSweep {
     return later;
   }
 
+  /// The first point with a mark, from p on; `end` where there is none before it.
+  std::int64_t Next(std::int64_t p, std::int64_t end) const {
+    // Mostly it is the next, whose mark may be new: eight at once would have to wait for it.
+    if (p < end && a.marks[p] != 0) return p;
+    for (; p < end; p += 8) {
+      std::uint64_t eight;
+      memcpy(&eight, a.marks + p, sizeof eight);
+      if (eight == 0) continue;
+      p += LowestBit(eight) / 8;
+      break;
+    }
+    return p < end ? p : end;
+  }
+
   /// The springs that a point creates and that are marked.
   void Visit(std::int64_t p) {
     double px = a.x[0][p], py = a.x[1][p], pz = a.x[2][p];
@@ -148,14 +162,7 @@ struct StrainSweep {
 /// sweep visits the others.
 std::int64_t LimitStrain(const StrainArgs& a) {
   StrainSweep sweep(a);
-  for (std::int64_t p = 0; p < a.pointCount; ++p) {
-    if (a.marks[p] != 0) {
-      sweep.Visit(p);
-      continue;
-    }
-    std::uint64_t eight;  // marks are few: step over stretches without any
-    memcpy(&eight, a.marks + p, sizeof eight);
-    if (eight == 0) p += 7;
-  }
+  for (std::int64_t p = sweep.Next(0, a.pointCount); p < a.pointCount; p = sweep.Next(p + 1, a.pointCount))
+    sweep.Visit(p);
   return sweep.limited;
 }

@@ -106,7 +106,6 @@ template <int turn>
 inline FloatPack3 Turn(const FloatPack3& a) {
   return {Turn<turn>(a.x), Turn<turn>(a.y), Turn<turn>(a.z)};
 }
-/// A bit for each lane in which two points are as near as that.
-inline unsigned Within(const FloatPack3& a, const FloatPack3& b, float squared) {
-  return AtMost(a.x - b.x, a.y - b.y, a.z - b.z, squared);
+inline FloatPack SquaredDistance(const FloatPack3& a, const FloatPack3& b) {
+  return SquaredLength(a.x - b.x, a.y - b.y, a.z - b.z);
 }

@@ -85,6 +85,9 @@ struct Words {
 inline Words LoadWords(const std::uint64_t* p) {
   return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))};
 }
+inline void StoreWords(std::uint64_t* p, Words a) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v);
+}
 inline Words AllWords(std::uint64_t s) {
   return {_mm256_set1_epi64x(static_cast<long long>(s))};
 }
@@ -114,8 +117,8 @@ inline Words Up(Words a) {
 inline unsigned Differ(Words a, Words b) {
   return ~Bits(Mask{_mm256_castsi256_pd(_mm256_cmpeq_epi64(a.v, b.v))}) & 15;
 }
-inline unsigned Below(Words a, Words b) {
-  return Bits(Mask{_mm256_castsi256_pd(_mm256_cmpgt_epi64(b.v, a.v))});
+inline unsigned Lack(Words a, Words bits) {
+  return Bits(Mask{_mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(a.v, bits.v), _mm256_setzero_si256()))});
 }
 inline Pack Gather(const double* from, const std::int32_t* index) {
   return {_mm256_setr_pd(from[index[0]], from[index[1]], from[index[2]], from[index[3]])};

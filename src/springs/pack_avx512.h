@@ -84,6 +84,9 @@ struct Words {
 inline Words LoadWords(const std::uint64_t* p) {
   return {_mm512_loadu_si512(p)};
 }
+inline void StoreWords(std::uint64_t* p, Words a) {
+  _mm512_storeu_si512(p, a.v);
+}
 inline Words AllWords(std::uint64_t s) {
   return {_mm512_set1_epi64(static_cast<long long>(s))};
 }
@@ -110,12 +113,12 @@ template <int bits>
 inline Words Up(Words a) {
   return {_mm512_slli_epi64(a.v, bits)};
 }
-/// One bit per lane. Below: of numbers less than 2^63.
+/// One bit per lane. Lack: where none of those bits is set.
 inline unsigned Differ(Words a, Words b) {
   return _mm512_cmpneq_epi64_mask(a.v, b.v);
 }
-inline unsigned Below(Words a, Words b) {
-  return _mm512_cmplt_epi64_mask(a.v, b.v);
+inline unsigned Lack(Words a, Words bits) {
+  return _mm512_testn_epi64_mask(a.v, bits.v);
 }
 /// from[index[lane]].
 inline Pack Gather(const double* from, const std::int32_t* index) {
@@ -128,11 +131,10 @@ inline Pack MaybeFused(Pack a, Pack b, Pack c) {
 }
 /// One byte per lane, with a bit for each of six masks.
 inline std::uint64_t BytePerLane(const Mask masks[6]) {
-  __m128i bytes = _mm_setzero_si128();
-  for (int m = 0; m < 6; ++m) {
-    bytes = _mm_or_si128(bytes, _mm_maskz_set1_epi8(masks[m].v, static_cast<char>(1 << m)));
-  }
-  return static_cast<std::uint64_t>(_mm_cvtsi128_si64(bytes));
+  constexpr std::uint64_t kBytes = 0x0101010101010101;
+  std::uint64_t bytes = 0;
+  for (int m = 0; m < 6; ++m) bytes |= _pdep_u64(masks[m].v, kBytes << m);
+  return bytes;
 }
 /// Six roots side by side, each rounded correctly as by Sqrt. Half of them come without the divider, which
 /// else would take longer than all other work on a spring. Returns false, and no roots, where that is
@@ -146,18 +148,17 @@ inline std::uint64_t BytePerLane(const Mask masks[6]) {
 /// the divider.
 inline bool QuickSqrt(const Pack a[6], Pack roots[6]) {
   constexpr int kQuick = 3;  // 0 to 2 and 4 to 6 are 5 to 15 % slower, on Zen 4
-  // Normal numbers whose roots' residuals do not underflow.
-  const __m512i least = _mm512_castpd_si512(_mm512_set1_pd(0x1p-900)), span = _mm512_set1_epi64(1800LL << 52);
+  // Residuals of quick roots between these do not underflow; of no number may the root be zero, for whose
+  // springs there is no direction. Least and greatest leave the multipliers free, which comparisons do not.
+  constexpr __mmask8 kAll = 0xff;  // without a mask, gcc 12 warns of what its headers leave undefined
+  __m512d least = a[0].v, greatest = a[0].v;
+  for (int s = 1; s < 6; ++s) least = _mm512_maskz_min_pd(kAll, least, a[s].v);
+  for (int s = 1; s < kQuick; ++s) greatest = _mm512_maskz_max_pd(kAll, greatest, a[s].v);
+  unsigned outside = _mm512_cmp_pd_mask(least, _mm512_set1_pd(0x1p-900), _CMP_NGE_UQ);
+  outside |= _mm512_cmp_pd_mask(greatest, _mm512_set1_pd(0x1p900), _CMP_NLE_UQ);
   const __m512i part = _mm512_set1_epi64((1LL << 52) - 1), first = _mm512_set1_epi64(1);
-  unsigned outside = 0;
   for (int s = 0; s < kQuick; ++s) {
-    const __m512i bits = _mm512_castpd_si512(a[s].v);
-    outside |= _mm512_cmpgt_epu64_mask(_mm512_sub_epi64(bits, least), span);
-    outside |= _mm512_cmpeq_epi64_mask(_mm512_and_si512(bits, part), first);
-  }
-  // The others may only not be zero, for whose springs there is no direction.
-  for (int s = kQuick; s < 6; ++s) {
-    outside |= _mm512_cmp_pd_mask(a[s].v, _mm512_setzero_pd(), _CMP_NGT_UQ);
+    outside |= _mm512_cmpeq_epi64_mask(_mm512_and_si512(_mm512_castpd_si512(a[s].v), part), first);
   }
   if (outside != 0) return false;
   const __m512d half = _mm512_set1_pd(0.5);
@@ -190,9 +191,11 @@ inline WideFloats AllWide(float s) {
 inline WideFloats operator-(WideFloats a, WideFloats b) {
   return {_mm512_sub_ps(a.v, b.v)};
 }
-inline unsigned AtMost(WideFloats x, WideFloats y, WideFloats z, float squared) {
-  const __m512 sum = _mm512_fmadd_ps(x.v, x.v, _mm512_fmadd_ps(y.v, y.v, _mm512_mul_ps(z.v, z.v)));
-  return _mm512_cmp_ps_mask(sum, _mm512_set1_ps(squared), _CMP_LE_OQ);
+inline WideFloats SquaredLength(WideFloats x, WideFloats y, WideFloats z) {
+  return {_mm512_fmadd_ps(x.v, x.v, _mm512_fmadd_ps(y.v, y.v, _mm512_mul_ps(z.v, z.v)))};
+}
+inline unsigned AtMost(WideFloats a, float bound) {
+  return _mm512_cmp_ps_mask(a.v, _mm512_set1_ps(bound), _CMP_LE_OQ);
 }
 /// Those of the first `count` numbers that have a bit, in order, and behind them `rest`, up to eight numbers.
 /// More than eight need not be right; room for `count` and for eight is written to.

@@ -83,6 +83,9 @@ struct Words {
 inline Words LoadWords(const std::uint64_t* p) {
   return {{p[0], p[1], p[2], p[3]}};
 }
+inline void StoreWords(std::uint64_t* p, Words a) {
+  memcpy(p, a.v, sizeof a.v);
+}
 inline Words AllWords(std::uint64_t s) {
   return {{s, s, s, s}};
 }
@@ -118,8 +121,8 @@ inline Words Up(Words a) {
 inline unsigned Differ(Words a, Words b) {
   return Bits(Mask{{a.v[0] != b.v[0], a.v[1] != b.v[1], a.v[2] != b.v[2], a.v[3] != b.v[3]}});
 }
-inline unsigned Below(Words a, Words b) {
-  return Bits(Mask{{a.v[0] < b.v[0], a.v[1] < b.v[1], a.v[2] < b.v[2], a.v[3] < b.v[3]}});
+inline unsigned Lack(Words a, Words bits) {
+  return Differ(a & bits, AllWords(0)) ^ 15;
 }
 inline Pack Gather(const double* from, const std::int32_t* index) {
   return Each([&](int i) { return from[index[i]]; });
@@ -159,11 +162,15 @@ template <int turn>
 inline FloatPack Turn(FloatPack a) {
   return EachFloat([&](int i) { return a.v[(i + turn) % 8]; });
 }
-inline unsigned AtMost(FloatPack x, FloatPack y, FloatPack z, float squared) {
+inline FloatPack Least(FloatPack a, FloatPack b) {
+  return EachFloat([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
+}
+inline FloatPack SquaredLength(FloatPack x, FloatPack y, FloatPack z) {
+  return EachFloat([&](int i) { return x.v[i] * x.v[i] + y.v[i] * y.v[i] + z.v[i] * z.v[i]; });
+}
+inline unsigned AtMost(FloatPack a, float bound) {
   unsigned bits = 0;
-  for (int i = 0; i < 8; ++i) {
-    bits |= (x.v[i] * x.v[i] + y.v[i] * y.v[i] + z.v[i] * z.v[i] <= squared ? 1u : 0u) << i;
-  }
+  for (int i = 0; i < 8; ++i) bits |= (a.v[i] <= bound ? 1u : 0u) << i;
   return bits;
 }
 inline void GatherFloats(const double* from, const std::int32_t* index, int count, double origin, float* to) {

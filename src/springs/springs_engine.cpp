@@ -305,6 +305,10 @@ void SpringsEngine::FindContacts() {
     map_.Update(boxKeys_, {boxChanges_.data(), changes});
   }
   bucketChunks_.clear();
+  if (PointChunks() == 1) {
+    bucketChunks_.push_back({map_.BucketCount(), 0});
+    return;
+  }
   std::int32_t points = 0, pointsBefore = 0;
   for (int bucket = 0; bucket < map_.BucketCount(); ++bucket) {
     points += map_.Count()[bucket];
