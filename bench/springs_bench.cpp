@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "bench/median.h"
 #include "bench/plain_twin.h"
 #include "core/text.h"
 #include "percale/scene_file.h"
@@ -31,12 +32,6 @@ double Seconds(Function&& function) {
   const Clock::time_point start = Clock::now();
   function();
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 struct Case {
