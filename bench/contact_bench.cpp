@@ -6,6 +6,7 @@
 #include <span>
 #include <thread>
 
+#include "bench/median.h"
 #include "core/text.h"
 #include "percale/fabrics.h"
 #include "percale/intersections.h"
@@ -41,12 +42,6 @@ Scene MakeScene(const std::string& name, int size) {
   }
   scene.cloths.push_back(cloth);
   return scene;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Runs a scene; `hash` is that of its end, and `intersections` what the judge finds, where it is asked.

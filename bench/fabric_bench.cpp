@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "bench/median.h"
 #include "bench/xpbd_cloth.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -60,11 +61,6 @@ Scene HangingSheet(int side, double stiffness) {
     cloth.pinned.push_back({side - 1 - i, side - 1});
   }
   return scene;
-}
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
 }
 
 /// Runs a method frame by frame and measures.

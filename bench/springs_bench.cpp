@@ -5,11 +5,10 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <optional>
 #include <string>
 #include <thread>
 
-#include "bench/plain_twin.h"
+#include "bench/median.h"
 #include "core/text.h"
 #include "percale/scene_file.h"
 #include "percale/world.h"
@@ -32,28 +31,6 @@ double Seconds(Function&& function) {
   function();
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
-struct Case {
-  std::string name;
-  int size = 0;
-  int frames = 0;                        // timed, in all rounds together
-  double twin = 0, one = 0, many = 0;    // ns per point and step
-  double ratioOne = 0, ratioMany = 0;    // of the twin's time
-  StageTimes stagesOne{}, stagesMany{};  // ns per point and step
-  bool equal = false;                    // to the last bit
-};
-
-struct HashRow {
-  const char* name = "";
-  PlainTwin::PairCount pairs;
-  double time = 0;  // ms per step
-};
 
 /// The scenes of the course, in code.
 Scene CourseScene(const std::string& name) {
@@ -81,19 +58,9 @@ void Resize(Scene& scene, int size) {
   }
 }
 
-std::optional<Scene> FindScene(const SpringsBenchOptions& options, const std::string& name, int size) {
-  Scene scene;
-  if (options.root.empty()) {
-    scene = CourseScene(name);
-  } else {
-    Result<Scene> loaded = LoadScene(options.root / "scene" / (name + ".json"));
-    if (!loaded) {
-      std::fputs(Format(loaded.diagnostics()).c_str(), stderr);
-      return std::nullopt;
-    }
-    scene = *loaded;
-  }
-  Resize(scene, size);
+Result<Scene> FindScene(const SpringsBenchOptions& options, const std::string& name, int size) {
+  Result<Scene> scene = options.root.empty() ? CourseScene(name) : LoadScene(options.root / "scene" / (name + ".json"));
+  if (scene) Resize(*scene, size);
   return scene;
 }
 
@@ -115,8 +82,8 @@ void RunFrames(World& world, int frames, StageTimes& stages) {
   }
 }
 
-Case TimeCase(const Scene& scene, const std::string& name, int size, int threads, int frames) {
-  Case result{.name = name, .size = size, .frames = kRounds * frames};
+SpringsRun TimeScene(const Scene& scene, const std::string& name, int size, int threads, int frames) {
+  SpringsRun result{.scene = name, .size = size, .frames = kRounds * frames};
   std::fprintf(stderr, "%s %d x %d\n", name.c_str(), size, size);
   PlainTwin twin(scene);
   World one(scene, {.threads = 1}), many(scene, {.threads = threads});
@@ -158,11 +125,11 @@ Case TimeCase(const Scene& scene, const std::string& name, int size, int threads
 
 /// The same folded sheet for each hash function: the pairs that its buckets bring together, and the
 /// time of the steps that follow.
-std::array<HashRow, 4> CompareHashes(Scene scene) {
+std::vector<HashRun> CompareHashes(Scene scene) {
   std::fprintf(stderr, "hash functions\n");
   constexpr HashFunction functions[4] = {HashFunction::Exact, HashFunction::Linear, HashFunction::Powers,
                                          HashFunction::Brute};
-  std::array<HashRow, 4> rows{{{"exact", {}, 0}, {"linear", {}, 0}, {"powers", {}, 0}, {"brute", {}, 0}}};
+  std::vector<HashRun> rows{{"exact", {}, 0}, {"linear", {}, 0}, {"powers", {}, 0}, {"brute", {}, 0}};
   std::vector<World> worlds;
   for (std::size_t h = 0; h < rows.size(); ++h) {
     scene.simulation.hash = HashFunction::Exact;
@@ -184,38 +151,37 @@ std::array<HashRow, 4> CompareHashes(Scene scene) {
   return rows;
 }
 
-void PrintTables(const std::vector<Case>& cases, const std::array<HashRow, 4>& hashes, int threads) {
-  std::printf("Nanoseconds per point and step, kernels for %s; the plain twin is the textbook program.\n",
-              springs::BestKernels().name);
-  std::printf("%-14s %11s %7s %11s %9s %11s %8s %11s  %s\n", "scene", "grid", "frames", "plain twin", "1 thread",
-              (std::to_string(threads) + " threads").c_str(), "faster", "faster", "positions");
-  for (const Case& c : cases) {
-    const std::string grid = std::to_string(c.size) + " x " + std::to_string(c.size);
-    std::printf("%-14s %11s %7d %11.1f %9.1f %11.1f %7.1fx %10.1fx  %s\n", c.name.c_str(), grid.c_str(), c.frames,
-                c.twin, c.one, c.many, c.ratioOne, c.ratioMany, c.equal ? "equal to the last bit" : "DIFFERENT");
-  }
+/// Of the grid and the number of frames or threads, which begin the lines of two tables.
+std::string LineStart(const SpringsRun& run, int number) {
+  const std::string grid = std::to_string(run.size) + " x " + std::to_string(run.size);
+  return Text("%-14s %11s %7d", run.scene.c_str(), grid.c_str(), number);
+}
 
-  std::printf("\nThe same by stage\n%-14s %11s %7s", "scene", "grid", "threads");
-  for (int s = 0; s < kStageCount; ++s) std::printf(" %13s", std::string(StageName(static_cast<Stage>(s))).c_str());
-  std::printf("\n");
-  for (const Case& c : cases) {
-    const std::string grid = std::to_string(c.size) + " x " + std::to_string(c.size);
+std::string StagesTable(const SpringsBench& bench) {
+  std::string text = Text("\nThe same by stage\n%-14s %11s %7s", "scene", "grid", "threads");
+  for (int s = 0; s < kStageCount; ++s) text += Text(" %13s", std::string(StageName(static_cast<Stage>(s))).c_str());
+  text += "\n";
+  for (const SpringsRun& run : bench.runs) {
     for (const bool alone : {true, false}) {
-      std::printf("%-14s %11s %7d", c.name.c_str(), grid.c_str(), alone ? 1 : threads);
-      for (const double time : alone ? c.stagesOne : c.stagesMany) std::printf(" %13.2f", time);
-      std::printf("\n");
+      text += LineStart(run, alone ? 1 : bench.threads);
+      for (const double time : alone ? run.stagesOne : run.stagesMany) text += Text(" %13.2f", time);
+      text += "\n";
     }
   }
+  return text;
+}
 
-  std::printf("\nHash functions: selfCollision %d x %d, frame %d, one thread\n", kHashSize, kHashSize, kHashFrame);
-  std::printf("%-14s %12s %13s %12s %13s\n", "function", "close pairs", "missed pairs", "false pairs", "ms per step");
-  for (const HashRow& row : hashes) {
-    std::printf("%-14s %12lld %13lld %12lld %13.3f\n", row.name, static_cast<long long>(row.pairs.found),
-                static_cast<long long>(row.pairs.missed), static_cast<long long>(row.pairs.falseNeighbours), row.time);
+std::string HashTable(const SpringsBench& bench) {
+  std::string text =
+      Text("\nHash functions: selfCollision %d x %d, frame %d, one thread\n", kHashSize, kHashSize, kHashFrame);
+  text += Text("%-14s %12s %13s %12s %13s\n", "function", "close pairs", "missed pairs", "false pairs", "ms per step");
+  for (const HashRun& row : bench.hashes) {
+    text += Text("%-14s %12lld %13lld %12lld %13.3f\n", row.function.c_str(), static_cast<long long>(row.pairs.found),
+                 static_cast<long long>(row.pairs.missed), static_cast<long long>(row.pairs.falseNeighbours), row.time);
   }
-  std::printf(
-      "Close: nearer than twice the thickness and in one bucket; missed: as near, but in different buckets;\n"
-      "false: in one bucket, though their boxes differ.\n");
+  return text +
+         "Close: nearer than twice the thickness and in one bucket; missed: as near, but in different buckets;\n"
+         "false: in one bucket, though their boxes differ.\n";
 }
 
 /// Three decimals, whatever the locale.
@@ -231,57 +197,68 @@ std::string StagesJson(const StageTimes& stages) {
   return text + "}";
 }
 
-void PrintJson(const std::vector<Case>& cases, const std::array<HashRow, 4>& hashes, int threads) {
+}  // namespace
+
+bool SpringsBench::Equal() const {
+  return std::all_of(runs.begin(), runs.end(), [](const SpringsRun& run) { return run.equal; });
+}
+
+Result<SpringsBench> MeasureSprings(const SpringsBenchOptions& options) {
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  SpringsBench bench;
+  bench.threads = options.threads > 0 ? options.threads : cores;
+  for (const char* name : {"pinned2", "selfCollision"}) {
+    for (const int size : options.sizes) {
+      const Result<Scene> scene = FindScene(options, name, size);
+      if (!scene) return scene.diagnostics();
+      const int frames = options.frames > 0 ? options.frames : std::clamp(kPointsPerRound * 3 / (size * size), 2, 16);
+      bench.runs.push_back(TimeScene(*scene, name, size, bench.threads, frames));
+    }
+  }
+  const Result<Scene> folded = FindScene(options, "selfCollision", kHashSize);
+  if (!folded) return folded.diagnostics();
+  bench.hashes = CompareHashes(*folded);
+  return bench;
+}
+
+std::string FormatTables(const SpringsBench& bench) {
+  std::string text = Text("Nanoseconds per point and step, kernels for %s; the plain twin is the textbook program.\n",
+                          springs::BestKernels().name);
+  text += Text("%-14s %11s %7s %11s %9s %11s %8s %11s  %s\n", "scene", "grid", "frames", "plain twin", "1 thread",
+               (std::to_string(bench.threads) + " threads").c_str(), "faster", "faster", "positions");
+  for (const SpringsRun& run : bench.runs) {
+    text += LineStart(run, run.frames) + Text(" %11.1f %9.1f %11.1f %7.1fx %10.1fx  %s\n", run.twin, run.one, run.many,
+                                              run.ratioOne, run.ratioMany,
+                                              run.equal ? "equal to the last bit" : "DIFFERENT");
+  }
+  return text + StagesTable(bench) + HashTable(bench);
+}
+
+std::string FormatJson(const SpringsBench& bench) {
   std::string text = "{\n  \"kernels\": " + Quote(springs::BestKernels().name) +
-                     ",\n  \"threads\": " + std::to_string(threads) + ",\n  \"ns_per_point_and_step\": [";
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    const Case& c = cases[i];
-    text += (i > 0 ? ",\n" : "\n") + std::string("    {\"scene\": ") + Quote(c.name) +
-            ", \"size\": " + std::to_string(c.size) + ", \"frames\": " + std::to_string(c.frames) +
-            ", \"plain_twin\": " + Short(c.twin) + ", \"one_thread\": " + Short(c.one) +
-            ", \"many_threads\": " + Short(c.many) + ", \"ratio_one_thread\": " + Short(c.ratioOne) +
-            ", \"ratio_many_threads\": " + Short(c.ratioMany) + ", \"equal\": " + (c.equal ? "true" : "false") +
-            ",\n     \"stages_one_thread\": " + StagesJson(c.stagesOne) +
-            ",\n     \"stages_many_threads\": " + StagesJson(c.stagesMany) + "}";
+                     ",\n  \"threads\": " + std::to_string(bench.threads) + ",\n  \"ns_per_point_and_step\": [";
+  const char* separator = "\n";
+  for (const SpringsRun& run : bench.runs) {
+    text += separator + std::string("    {\"scene\": ") + Quote(run.scene) + ", \"size\": " + std::to_string(run.size) +
+            ", \"frames\": " + std::to_string(run.frames) + ", \"plain_twin\": " + Short(run.twin) +
+            ", \"one_thread\": " + Short(run.one) + ", \"many_threads\": " + Short(run.many) +
+            ", \"ratio_one_thread\": " + Short(run.ratioOne) + ", \"ratio_many_threads\": " + Short(run.ratioMany) +
+            ", \"equal\": " + (run.equal ? "true" : "false") +
+            ",\n     \"stages_one_thread\": " + StagesJson(run.stagesOne) +
+            ",\n     \"stages_many_threads\": " + StagesJson(run.stagesMany) + "}";
+    separator = ",\n";
   }
   text += "\n  ],\n  \"hash_functions\": [";
-  for (std::size_t h = 0; h < hashes.size(); ++h) {
-    const HashRow& row = hashes[h];
-    text += (h > 0 ? ",\n" : "\n") + std::string("    {\"function\": ") + Quote(row.name) +
+  separator = "\n";
+  for (const HashRun& row : bench.hashes) {
+    text += separator + std::string("    {\"function\": ") + Quote(row.function) +
             ", \"close_pairs\": " + std::to_string(row.pairs.found) +
             ", \"missed_pairs\": " + std::to_string(row.pairs.missed) +
             ", \"false_pairs\": " + std::to_string(row.pairs.falseNeighbours) +
             ", \"ms_per_step\": " + Short(row.time) + "}";
+    separator = ",\n";
   }
-  std::puts((text + "\n  ]\n}").c_str());
-}
-
-}  // namespace
-
-int BenchSprings(const SpringsBenchOptions& options) {
-  constexpr int kInvalidScene = 3;
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int threads = options.threads > 0 ? options.threads : cores;
-  std::vector<Case> cases;
-  for (const char* name : {"pinned2", "selfCollision"}) {
-    for (const int size : options.sizes) {
-      const std::optional<Scene> scene = FindScene(options, name, size);
-      if (!scene) return kInvalidScene;
-      const int frames = options.frames > 0 ? options.frames : std::clamp(kPointsPerRound * 3 / (size * size), 2, 16);
-      cases.push_back(TimeCase(*scene, name, size, threads, frames));
-    }
-  }
-  const std::optional<Scene> folded = FindScene(options, "selfCollision", kHashSize);
-  if (!folded) return kInvalidScene;
-  const std::array<HashRow, 4> hashes = CompareHashes(*folded);
-  if (options.json) {
-    PrintJson(cases, hashes, threads);
-  } else {
-    PrintTables(cases, hashes, threads);
-  }
-  const bool equal = std::all_of(cases.begin(), cases.end(), [](const Case& c) { return c.equal; });
-  if (!equal) std::fputs("error: the engine's positions differ from the plain twin's\n", stderr);
-  return equal ? 0 : 1;
+  return text + "\n  ]\n}\n";
 }
 
 }  // namespace percale::bench

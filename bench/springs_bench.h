@@ -2,8 +2,14 @@
 /// \file
 /// `percale bench springs`: the speed of the spring engine beside that of the plain twin.
 
+#include <array>
 #include <filesystem>
+#include <string>
 #include <vector>
+
+#include "bench/plain_twin.h"
+#include "percale/diagnostic.h"
+#include "percale/world.h"
 
 namespace percale::bench {
 
@@ -14,14 +20,40 @@ struct SpringsBenchOptions {
   std::vector<int> sizes{50, 100, 200};  ///< Points along a side of the sheet, each >= 3.
   int threads = 0;                       ///< Of the many-threaded runs, >= 1; 0: one per core.
   int frames = 0;                        ///< Timed per round, of which there are five; 0: fewer for larger sheets.
-  bool json = false;                     ///< One JSON object on stdout instead of tables.
 };
 
-/// Times pinned2 and selfCollision at each size, and the four hash functions, and prints tables to
-/// stdout, progress to stderr. Twin and engine take turns over the same frames, and each number is
-/// the median over the rounds, so a machine that others use as well distorts neither.
-/// Returns the program's exit code: 0; 1 when a position differs between twin and engine, or
-/// between numbers of threads; 3 when a scene file cannot be read.
-int BenchSprings(const SpringsBenchOptions& options);
+/// Twin and engine on one scene. Times are the median over the rounds, per point and step [ns].
+struct SpringsRun {
+  std::string scene;
+  int size = 0;
+  int frames = 0;                      ///< Timed, in all rounds together.
+  double twin = 0, one = 0, many = 0;  ///< Of the twin, of the engine on one thread and on many.
+  double ratioOne = 0, ratioMany = 0;  ///< How many times faster than the twin.
+  std::array<double, kStageCount> stagesOne{}, stagesMany{};
+  bool equal = false;  ///< Twin and engine come to the same bits.
+};
+
+/// A hash function on a folded sheet.
+struct HashRun {
+  std::string function;
+  PlainTwin::PairCount pairs;
+  double time = 0;  ///< Of a step [ms].
+};
+
+struct SpringsBench {
+  int threads = 0;
+  std::vector<SpringsRun> runs;
+  std::vector<HashRun> hashes;
+
+  bool Equal() const;
+};
+
+/// Times pinned2 and selfCollision at each size, and the four hash functions; progress goes to stderr. Twin and engine
+/// take turns over the same frames, and each number is the median over the rounds, so a machine that others use as well
+/// distorts neither. Fails when a scene file cannot be read.
+Result<SpringsBench> MeasureSprings(const SpringsBenchOptions& options);
+
+std::string FormatTables(const SpringsBench& bench);
+std::string FormatJson(const SpringsBench& bench);
 
 }  // namespace percale::bench

@@ -244,8 +244,12 @@ Result<std::string> ReadAll(const std::filesystem::path& file) {
 }  // namespace
 
 std::string FormatCheckpoint(const WorldState& state) {
+  return FormatCheckpoint(state, FormatScene(WithAbsolutePaths(*state.scene)));
+}
+
+std::string FormatCheckpoint(const WorldState& state, const std::string& sceneText) {
   Writer body;
-  body.Text(FormatScene(WithAbsolutePaths(*state.scene)));
+  body.Text(sceneText);
   ExchangeState(body, state);
   Writer head, tail;
   head.Number(kVersion);

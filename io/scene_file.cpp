@@ -531,6 +531,49 @@ std::string ClassicClothSchema() {
          required + "]},\n    {\"type\": \"array\", \"items\": {\"required\": [" + required + "]}}]}}},\n";
 }
 
+// The files that a scene names.
+
+/// Calls visit(name, loaded) for each mesh and cache that has a name.
+template <class Visit>
+void ForEachFile(Scene& scene, Visit&& visit) {
+  const auto visitMeshes = [&](auto& owners) {
+    for (auto& owner : owners) {
+      if (!owner.mesh.empty()) visit(owner.mesh, owner.loaded);
+    }
+  };
+  visitMeshes(scene.cloths);
+  visitMeshes(scene.colliders);
+  for (ColliderSettings& collider : scene.colliders) {
+    if (!collider.cache.empty()) visit(collider.cache, collider.loadedCache);
+  }
+}
+
+/// Gives a file another name, and what was read of it along with it.
+template <class Loaded>
+void Rename(std::string& name, std::shared_ptr<const Loaded>& loaded, std::string to) {
+  name = std::move(to);
+  if (!loaded) return;
+  Loaded renamed = *loaded;
+  renamed.file = name;
+  loaded = std::make_shared<const Loaded>(std::move(renamed));
+}
+
+std::optional<std::filesystem::path> AbsolutePath(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(file, error).lexically_normal();
+  if (error) return std::nullopt;
+  return absolute;
+}
+
+/// The path that leads down from the folder to the file, or nothing where the file is not in it.
+std::optional<std::filesystem::path> PathFrom(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  const auto from = AbsolutePath(folder.empty() ? std::filesystem::path(".") : folder), to = AbsolutePath(file);
+  if (!from || !to) return std::nullopt;
+  const std::filesystem::path path = to->lexically_relative(*from);
+  if (path.empty() || *path.begin() == "..") return std::nullopt;
+  return path;
+}
+
 }  // namespace
 
 Result<Scene> LoadScene(const std::filesystem::path& file, Origins* origins) {
@@ -569,23 +612,23 @@ Status LoadMeshes(Scene& scene) {
 }
 
 Scene WithAbsolutePaths(Scene scene) {
-  const auto rename = [&](std::string& name, auto& loaded) {
-    if (name.empty()) return;
-    std::error_code error;
-    const std::filesystem::path file = std::filesystem::absolute(MeshFile(scene, name), error).lexically_normal();
-    if (error) return;
-    name = PathText(file);
-    if (!loaded) return;
-    auto renamed = *loaded;
-    renamed.file = name;
-    loaded = std::make_shared<const decltype(renamed)>(std::move(renamed));
-  };
-  const auto change = [&](auto& owners) {
-    for (auto& owner : owners) rename(owner.mesh, owner.loaded);
-  };
-  change(scene.cloths);
-  change(scene.colliders);
-  for (ColliderSettings& collider : scene.colliders) rename(collider.cache, collider.loadedCache);
+  ForEachFile(scene, [&](std::string& name, auto& loaded) {
+    if (const auto file = AbsolutePath(MeshFile(scene, name))) Rename(name, loaded, PathText(*file));
+  });
+  return scene;
+}
+
+Scene WithPortablePaths(Scene scene, const std::filesystem::path& project) {
+  const std::filesystem::path own = TextPath(scene.name).parent_path();
+  bool inProject = !project.empty();
+  ForEachFile(scene, [&](const std::string& name, auto&) {
+    inProject = inProject && PathFrom(project, MeshFile(scene, name)).has_value();
+  });
+  ForEachFile(scene, [&](std::string& name, auto& loaded) {
+    if (!inProject && !TextPath(name).is_absolute()) return;
+    const auto path = PathFrom(inProject ? project : own, MeshFile(scene, name));
+    if (path) Rename(name, loaded, PathText(*path));
+  });
   return scene;
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "core/base64.h"
@@ -14,6 +16,8 @@
 
 namespace percale {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int kVersion = 1;
 constexpr const char *kScene = "percale:scene", *kView = "percale:view", *kFrame = "percale:frame",
@@ -120,9 +124,50 @@ bool SameButLook(Scene a, const Scene& b) {
   return FormatScene(a) == FormatScene(b);
 }
 
+/// The names of meshes and caches in the text of a scene.
+std::vector<std::string> NamedFiles(const JsonDocument& doc) {
+  std::vector<std::string> files;
+  for (const char* group : {"cloth", "collider"}) {
+    const JsonIndex member = doc.Member(0, group);
+    if (member == 0) continue;
+    const bool several = doc.Kind(member) == JsonKind::Array;
+    for (const JsonIndex object : several ? doc.Children(member) : std::vector<JsonIndex>{member}) {
+      for (const char* key : {"mesh", "cache"}) {
+        const JsonIndex name = doc.Member(object, key);
+        if (name != 0 && doc.Kind(name) == JsonKind::Text && !doc.Text(name).empty()) files.push_back(doc.Text(name));
+      }
+    }
+  }
+  return files;
+}
+
+/// The first folder from which the names of all files lead to one. `name`: of the picture, for the message where none
+/// is.
+Result<fs::path> FolderOfFiles(const std::string& sceneText, const std::vector<fs::path>& folders,
+                               const std::string& name) {
+  const Result<JsonDocument> doc = JsonDocument::Parse(sceneText, name + " (its scene)");
+  if (!doc) return doc.diagnostics();
+  const std::vector<std::string> files = NamedFiles(*doc);
+  const auto missing = [&](const fs::path& folder) {
+    return std::find_if(files.begin(), files.end(), [&](const std::string& file) {
+      std::error_code error;
+      return !fs::exists(folder / TextPath(file), error);
+    });
+  };
+  for (const fs::path& folder : folders) {
+    if (missing(folder) == files.end()) return folder;
+  }
+  std::string places;
+  for (const fs::path& folder : folders)
+    places += (places.empty() ? "" : ", ") + (folder.empty() ? std::string(".") : PathText(folder));
+  return MakeError(name, "its scene needs the file " + Quote(*missing(folders.back()), 200) +
+                             ", which was looked for from these folders: " + places +
+                             "; put the picture beside the scene that it shows, or start from that folder");
+}
+
 }  // namespace
 
-Result<ViewFile> OpenViewFile(const std::filesystem::path& file) {
+Result<ViewFile> OpenViewFile(const fs::path& file, const fs::path& project) {
   const std::string ending = LowerExtension(file);
   if (ending == ".percale") {
     Result<WorldState> state = LoadCheckpoint(file);
@@ -133,7 +178,7 @@ Result<ViewFile> OpenViewFile(const std::filesystem::path& file) {
     return opened;
   }
   if (ending == ".png") {
-    Result<std::optional<ViewFile>> picture = ReadPictureView(file);
+    Result<std::optional<ViewFile>> picture = ReadPictureView(file, project);
     if (!picture) return picture.diagnostics();
     if (*picture) return std::move(**picture);
     return MakeError(PathText(file),
@@ -146,19 +191,23 @@ Result<ViewFile> OpenViewFile(const std::filesystem::path& file) {
   return {std::move(opened), scene.diagnostics()};
 }
 
-std::vector<PngText> DescribePicture(const Scene& scene, const View& view, int frame, const WorldState* state) {
+std::vector<PngText> DescribePicture(const Scene& scene, const View& view, int frame, const WorldState* state,
+                                     const fs::path& project) {
   Scene seen = scene;
   seen.look = view.look;
   seen.camera = view.camera.Settings();
-  std::vector<PngText> texts = {{kScene, FormatScene(WithAbsolutePaths(std::move(seen)))},
+  std::vector<PngText> texts = {{kScene, FormatScene(WithPortablePaths(std::move(seen), project))},
                                 {kView, FormatView(view)},
                                 {kFrame, std::to_string(frame)}};
   // Texts of a PNG hold no zeros. The file compresses base64 back to the size of the bytes.
-  if (state && state->Bytes() <= kMostStateInPicture) texts.push_back({kState, ToBase64(FormatCheckpoint(*state))});
+  if (state && state->Bytes() <= kMostStateInPicture) {
+    const std::string ofState = FormatScene(WithPortablePaths(*state->scene, project));
+    texts.push_back({kState, ToBase64(FormatCheckpoint(*state, ofState))});
+  }
   return texts;
 }
 
-Result<std::optional<ViewFile>> ReadPictureView(const std::filesystem::path& file) {
+Result<std::optional<ViewFile>> ReadPictureView(const fs::path& file, const fs::path& project) {
   const std::string name = PathText(file);
   std::vector<PngText> texts;
   const Result<Image> image = ReadPng(file, &texts);
@@ -179,9 +228,15 @@ Result<std::optional<ViewFile>> ReadPictureView(const std::filesystem::path& fil
   ViewFile opened;
   View view;
   if (const std::string problem = ReadView(*viewText, name, view); !problem.empty()) return fail(problem);
-  Result<Scene> scene = ParseScene(*sceneText, name + " (its scene)");
+  std::vector<fs::path> folders = {file.parent_path(), "."};
+  if (!project.empty()) folders.push_back(project);
+  const Result<fs::path> folder = FolderOfFiles(*sceneText, folders, name);
+  if (!folder) return folder.diagnostics();
+  // As if the picture lay in the folder where its files are.
+  const std::string placed = PathText(*folder / file.filename());
+  Result<Scene> scene = ParseScene(*sceneText, placed + " (its scene)");
   if (!scene) return scene.diagnostics();
-  opened.scene = std::move(*scene);
+  opened.scene = WithAbsolutePaths(std::move(*scene));
   const View seen = View::ForScene(opened.scene);
   view.look = seen.look;
   view.camera = seen.camera;
@@ -194,8 +249,9 @@ Result<std::optional<ViewFile>> ReadPictureView(const std::filesystem::path& fil
   if (stateText) {
     const std::optional<std::string> bytes = FromBase64(*stateText);
     if (!bytes) return fail("its percale:state is damaged: expected base64");
-    Result<WorldState> state = ParseCheckpoint(*bytes, name + " (its state)");
+    Result<WorldState> state = ParseCheckpoint(*bytes, placed + " (its state)");
     if (!state) return state.diagnostics();
+    state->scene = std::make_shared<const Scene>(WithAbsolutePaths(*state->scene));
     if (!SameButLook(*state->scene, opened.scene) || state->report.frame != opened.frame)
       return fail("its texts have been changed: its state is not one of its scene at its frame");
     opened.state = std::make_shared<const WorldState>(std::move(*state));

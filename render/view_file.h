@@ -33,15 +33,19 @@ struct ViewFile {
 };
 
 /// Reads a checkpoint (NAME.percale), a picture (NAME.png), or else a scene file. Fails as those do, and on a
-/// picture that does not tell what it shows.
-Result<ViewFile> OpenViewFile(const std::filesystem::path& file);
+/// picture that does not tell what it shows. `project`: the project's folder, where meshes of pictures may be.
+Result<ViewFile> OpenViewFile(const std::filesystem::path& file, const std::filesystem::path& project = {});
 
 /// The texts of a picture that bring back what it shows: `scene` with look and camera as in the view, and
-/// the state at its frame, or null where `frame` frames from the start lead there.
-std::vector<PngText> DescribePicture(const Scene& scene, const View& view, int frame, const WorldState* state);
+/// the state at its frame, or null where `frame` frames from the start lead there. Meshes and caches are named as from
+/// the project's folder, or the scene's own (WithPortablePaths).
+std::vector<PngText> DescribePicture(const Scene& scene, const View& view, int frame, const WorldState* state,
+                                     const std::filesystem::path& project = {});
 
-/// Reads what a picture tells; nothing where it is a picture of others. Fails when it is none, or cut, and
-/// when its texts are damaged or of another version.
-Result<std::optional<ViewFile>> ReadPictureView(const std::filesystem::path& file);
+/// Reads what a picture tells; nothing where it is a picture of others. Its meshes and caches may lie where they do as
+/// seen from the picture's folder, from the current one, or from the project's. Fails when it is none, or cut, when its
+/// texts are damaged or of another version, and when a file is in none of those folders.
+Result<std::optional<ViewFile>> ReadPictureView(const std::filesystem::path& file,
+                                                const std::filesystem::path& project = {});
 
 }  // namespace percale

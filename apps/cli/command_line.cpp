@@ -532,14 +532,17 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   CLI::App& doctor = verb(Verb::Doctor, "Tells what this machine offers, and what is missing", "  percale doctor\n");
   doctor.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR");
 
-  CLI::App& bench = verb(Verb::Bench, "Measures speed against the textbook program",
-                         "  percale bench springs\n"
-                         "  percale bench springs --sizes 50 --threads 2\n"
-                         "  percale bench springs --json > speed.json\n"
-                         "  percale bench fabric\n"
-                         "  percale bench fabric --sizes 32 -o report\n"
-                         "  percale bench contact --sizes 100\n"
-                         "fabric also writes fabric.html, one page with plots, and two of them as .svg.\n");
+  CLI::App& bench =
+      verb(Verb::Bench, "Measures speed against the textbook program",
+           "  percale bench springs\n"
+           "  percale bench springs --sizes 50 --threads 2\n"
+           "  percale bench springs --json > speed.json\n"
+           "  percale bench fabric\n"
+           "  percale bench fabric --sizes 32 -o report\n"
+           "  percale bench contact --sizes 100\n"
+           "  percale bench springs -o report\n"
+           "-o DIR keeps what was measured as NAME.txt and NAME.json. fabric always does, in benchmarks/ by\n"
+           "default, with fabric.html, one page with plots, and two of them as .svg.\n");
   bench.add_option("NAME", builder.options().benchmark, "Which: springs (default), fabric, contact");
   bench.add_option("-r", builder.options().root, "The project's folder")->type_name("DIR");
   builder.Call(
@@ -553,7 +556,7 @@ void AddVerbs(CLI::App& app, Builder& builder) {
   builder.Call(bench, "--frames", "Frames per timed round; default: fewer for larger sheets", "N", "Options",
                [&builder](const std::string& text) { builder.options().frames = Whole("--frames", text, 1, 100000); });
   bench.add_flag("--json", builder.options().json, "One JSON object instead of tables")->group("Options");
-  builder.Folder(bench, "benchmarks");
+  builder.Folder(bench, "benchmarks (fabric), none (springs, contact)");
 
   verb(Verb::Version, "Prints the version", "  percale version\n");
 }

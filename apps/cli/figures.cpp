@@ -286,8 +286,8 @@ int Gallery::Draw(Drawing& drawing, const Shape& shape) {
   const auto image = painter_.Paint(world.scene(), cloths, drawing.view);
   PrintDiagnostics(image.diagnostics());
   if (!image) return kInvalid;
-  const Status status = SavePicture(folder_ / FigureFile(drawing.figure->number), *image, world.scene(), drawing.view,
-                                    drawing.figure->frame, {{kKeyword, drawing.key}});
+  const Status status = SavePicture(folder_ / FigureFile(drawing.figure->number), *image, root_, world.scene(),
+                                    drawing.view, drawing.figure->frame, {{kKeyword, drawing.key}});
   PrintDiagnostics(status.diagnostics());
   if (!status) return kFailed;
   drawing.current = true;

@@ -119,7 +119,7 @@ std::variant<Studio, int> OpenStudio(const Options& options, const Session& sess
   // Errors are told with the first picture, which they prevent.
   const Diagnostics& problems = painter->shaders().Problems(view.look.shader);
   if (!HasErrors(problems)) PrintDiagnostics(problems);
-  return Studio{std::move(*painter), std::move(view)};
+  return Studio{std::move(*painter), std::move(view), *root};
 }
 
 std::optional<Image> Paint(Studio& studio, const World& world) {
@@ -129,11 +129,11 @@ std::optional<Image> Paint(Studio& studio, const World& world) {
   return std::move(*image);
 }
 
-Status SavePicture(const fs::path& file, const Image& image, const Scene& scene, const View& view, int frame,
-                   std::vector<PngText> more, const WorldState* state) {
+Status SavePicture(const fs::path& file, const Image& image, const fs::path& root, const Scene& scene, const View& view,
+                   int frame, std::vector<PngText> more, const WorldState* state) {
   PngOptions png;
   png.level = kPngLevel;
-  png.text = DescribePicture(scene, view, frame, state);
+  png.text = DescribePicture(scene, view, frame, state, root);
   png.text.insert(png.text.begin(), {"Software", std::string("Percale ") + PERCALE_VERSION});
   png.text.insert(png.text.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   return WritePng(file, image, png);
@@ -145,8 +145,8 @@ int WritePicture(Studio& studio, const World& world, const Session& session, con
   // From the start there is a way to the frame; from a state there is none without it.
   WorldState state;
   if (session.state) world.Save(state);
-  const Status status =
-      SavePicture(file, *image, world.scene(), studio.view, world.report().frame, {}, session.state ? &state : nullptr);
+  const Status status = SavePicture(file, *image, studio.root, world.scene(), studio.view, world.report().frame, {},
+                                    session.state ? &state : nullptr);
   PrintDiagnostics(status.diagnostics());
   return status ? kDone : kFailed;
 }

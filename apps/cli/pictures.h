@@ -32,6 +32,7 @@ Diagnostics ApplyKeptUniforms(const Options& options, const Session& session, co
 struct Studio {
   Painter painter;
   View view;
+  std::filesystem::path root;  ///< The project's folder.
 };
 
 /// Opens the studio, and checks the names of shader and uniforms. On failure prints what is wrong
@@ -42,9 +43,11 @@ std::variant<Studio, int> OpenStudio(const Options& options, const Session& sess
 /// shader is at fault).
 std::optional<Image> Paint(Studio& studio, const World& world);
 
-/// Writes a PNG file that tells what it shows (render/view_file.h), `more` behind that.
-Status SavePicture(const std::filesystem::path& file, const Image& image, const Scene& scene, const View& view,
-                   int frame, std::vector<PngText> more = {}, const WorldState* state = nullptr);
+/// Writes a PNG file that tells what it shows, from the project's folder `root` (render/view_file.h), `more` behind
+/// that.
+Status SavePicture(const std::filesystem::path& file, const Image& image, const std::filesystem::path& root,
+                   const Scene& scene, const View& view, int frame, std::vector<PngText> more = {},
+                   const WorldState* state = nullptr);
 
 /// Paints the World and writes such a file. Returns the exit code.
 int WritePicture(Studio& studio, const World& world, const Session& session, const std::filesystem::path& file);

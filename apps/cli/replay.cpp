@@ -66,8 +66,9 @@ int Replay(const Options& options) {
   CatchInterrupts();
   SessionRecorder recorder(options.output);
   const auto goOn = [&](const World& world) { return recorder.Add(world) && !Interrupted(); };
-  const auto load = [](const std::filesystem::path& file) -> Result<WorldState> {
-    Result<ViewFile> opened = OpenViewFile(file);
+  const auto root = FindRoot(options.root);
+  const auto load = [&](const std::filesystem::path& file) -> Result<WorldState> {
+    Result<ViewFile> opened = OpenViewFile(file, root ? *root : std::filesystem::path());
     if (!opened) return opened.diagnostics();
     if (!opened->state) return MakeError(PathText(file), "expected a checkpoint or a picture that holds a state");
     return *opened->state;

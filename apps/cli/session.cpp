@@ -176,7 +176,8 @@ std::variant<Session, int> OpenSession(const Options& options) {
   }
   Session session;
   session.file = *file;
-  auto opened = OpenViewFile(*file);
+  const auto root = FindRoot(options.root);
+  auto opened = OpenViewFile(*file, root ? *root : fs::path());
   if (!opened) {
     PrintDiagnostics(opened.diagnostics());
     return kInvalid;

@@ -63,7 +63,7 @@ Result<SceneReading> SceneSource::Read(const fs::path& file) const {
   std::error_code ignored;
   if (fs::is_other(fs::status(file, ignored)))
     return MakeError(PathText(file), "expected a scene file, got a device or pipe");
-  const Result<ViewFile> opened = OpenViewFile(file);
+  const Result<ViewFile> opened = OpenViewFile(file, options_.root);
   if (!opened) return opened.diagnostics();
   SceneReading reading{.scene = opened->scene};
   reading.statesShader = opened->view || opened->state || opened->origins.count("/look/shader") > 0;

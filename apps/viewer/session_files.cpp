@@ -115,12 +115,12 @@ std::vector<PictureOrder> Session::TakePictureOrders() {
 
 void Session::KeepPicture(Image image, const PictureOrder& order) {
   auto picture = std::make_shared<const Image>(std::move(image));
-  background_.Do([picture, order, stem = OutputStem()]() -> JobReport {
+  background_.Do([picture, order, stem = OutputStem(), root = options_.root]() -> JobReport {
     const WorldState& state = *order.state;
     PngOptions png;
     png.level = kPngLevel;
     // Whether a hand has been at work nobody can tell from the settings, so the state is always told.
-    png.text = DescribePicture(*state.scene, order.view, state.report.frame, &state);
+    png.text = DescribePicture(*state.scene, order.view, state.report.frame, &state, root);
     png.text.insert(png.text.begin(), {"Software", std::string("Percale ") + PERCALE_VERSION});
     const fs::path file = NumberedName(stem, ".png");
     if (const Status written = WritePng(file, *picture, png); !written) return {"picture", {}, written.diagnostics()};
@@ -238,7 +238,7 @@ bool Session::OpenFile(const fs::path& file) {
   if (ending != ".percale" && ending != ".png") return OpenScene(file);
   ViewFile opened;
   if (ending == ".png") {
-    Result<std::optional<ViewFile>> picture = ReadPictureView(file);
+    Result<std::optional<ViewFile>> picture = ReadPictureView(file, options_.root);
     if (!picture) {
       messages_.Set("open", picture.diagnostics());
       return false;

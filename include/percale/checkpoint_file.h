@@ -21,6 +21,8 @@ Result<WorldState> LoadCheckpoint(const std::filesystem::path& file);
 
 /// The same as bytes in memory; `name` stands for the file in messages.
 std::string FormatCheckpoint(const WorldState& state);
+/// The same with this text of its scene, which names the same files in another way.
+std::string FormatCheckpoint(const WorldState& state, const std::string& sceneText);
 Result<WorldState> ParseCheckpoint(std::string_view bytes, const std::string& name);
 
 }  // namespace percale

@@ -24,8 +24,10 @@ namespace percale {
 /// the rest shape, and for drawing the first.
 Result<RestMesh> LoadMesh(const std::filesystem::path& file, const MeshOptions& options = {});
 
-/// Reads how the vertices of a mesh move from a .pc2 of any program: one point for each vertex of the mesh's file. Its
-/// positions are in the unit of that file, which has `scale` metres. `file` of the result is left empty.
+/// Reads how the vertices of a mesh move from a file of any program: one point for each vertex of the mesh's file.
+///   .pc2  PointCache2: the time between two samples in seconds or frames
+///   .mdd  Motion Designer: a time per sample [s]; these must be even
+/// Its positions are in the unit of the mesh's file, which has `scale` metres. `file` of the result is left empty.
 Result<VertexCache> LoadVertexCache(const std::filesystem::path& file, const RestMesh& mesh, double scale);
 
 /// Takes the frames of one run and writes them by the extension of `file`:

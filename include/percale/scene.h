@@ -125,7 +125,7 @@ struct ColliderSettings {
   double tubeRadius = 0.05;  ///< Of the tube of a torus [m], > 0, < radius.
   std::string mesh;          ///< File of a mesh; the path begins at the folder of the scene's file.
   double meshScale = 1;      ///< Metres per unit of that file, > 0.
-  std::string cache;         ///< File of samples by which the mesh's vertices move, .pc2; empty: they do not.
+  std::string cache;         ///< File of samples by which the mesh's vertices move, .pc2 or .mdd; empty: they do not.
   double cacheRate = 0;      ///< Its samples per second [1/s], >= 0; 0: as the file states.
   double cacheStart = 0;     ///< When its first sample is due [s].
   bool twoSided = false;     ///< Of an open mesh: cloth stays out from both sides, not only in front.

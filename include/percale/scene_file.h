@@ -33,6 +33,10 @@ Status LoadMeshes(Scene& scene);
 /// The scene with the paths of its meshes and caches absolute, for a text that is kept elsewhere.
 Scene WithAbsolutePaths(Scene scene);
 
+/// The scene for a text that goes to other machines: the paths of its meshes and caches begin at `project` where all of
+/// them lie in that folder, else at the folder of `scene.name`. Those that lie in neither stay as they are.
+Scene WithPortablePaths(Scene scene, const std::filesystem::path& project);
+
 /// The scene as JSON text that `ParseScene` reads back to the same scene; states every parameter.
 std::string FormatScene(const Scene& scene);
 

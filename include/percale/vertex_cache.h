@@ -15,6 +15,7 @@ struct VertexCache {
   std::int32_t samples = 0;      ///< >= 1.
   float greatestMove = 0;        ///< Of a vertex from one sample to the next, in the mesh's unit.
   std::vector<float> positions;  ///< x, y, z of each vertex of the mesh, sample after sample, in the mesh's unit.
+  bool inSeconds = false;        ///< `spacing` is in seconds, however long.
   friend bool operator==(const VertexCache&, const VertexCache&) = default;
 };
 

@@ -1,11 +1,7 @@
 // How pairs of things are, kStateLanes at a time. Included by kernels_impl.h inside the namespace of an instruction
 // set, like everything there; never elsewhere.
 
-#if defined(__AVX512F__)
-constexpr int kStateLanes = 8;
-#else
-constexpr int kStateLanes = 4;
-#endif
+constexpr int kStateLanes = kDoubleLanes;
 using StateDoubles = Pack<double, kStateLanes, Level>;
 
 /// Of the pairs from `first` on; where there are fewer the last stands in for what is missing.

@@ -13,11 +13,7 @@ namespace percale::fabric::PERCALE_KERNELS {
 
 struct Level;
 
-#if defined(__AVX512F__)
-constexpr int kLanes = 8;
-#else
-constexpr int kLanes = 4;
-#endif
+constexpr int kLanes = kDoubleLanes;
 using Doubles = Pack<double, kLanes, Level>;
 using Floats = Pack<float, kLanes, Level>;
 

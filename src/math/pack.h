@@ -8,6 +8,14 @@
 
 namespace percale {
 
+/// How many doubles kernels compute with at a time: as many as the widest registers hold that this source file is
+/// compiled for, but at least 4. Another file may have another number, hence not `inline`.
+#if defined(__AVX512F__)
+constexpr int kDoubleLanes = 8;
+#else
+constexpr int kDoubleLanes = 4;
+#endif
+
 /// `Level`: a type of the one source file that computes with it. Files compiled for different processors may not share
 /// an instance of a template: the linker would keep one for all, which not every processor need run.
 template <class T, int lanes, class Level>

@@ -8,7 +8,7 @@
 namespace percale {
 namespace {
 
-/// From here on the spacing of a file is in frames, below it in seconds.
+/// From here on the spacing of a file that does not say is in frames, below it in seconds.
 constexpr double kLeastFrames = 0.2;
 
 }  // namespace
@@ -28,7 +28,8 @@ bool LacksCache(const ColliderSettings& settings) {
 double SampleSeconds(const Scene& scene, const ColliderSettings& settings) {
   if (settings.cacheRate > 0) return 1 / settings.cacheRate;
   const double spacing = settings.loadedCache->spacing;
-  return spacing < kLeastFrames ? spacing : spacing / scene.simulation.framesPerSecond;
+  return settings.loadedCache->inSeconds || spacing < kLeastFrames ? spacing
+                                                                   : spacing / scene.simulation.framesPerSecond;
 }
 
 void PlaceVertices(const Scene& scene, const ColliderSettings& settings, double time, std::span<Vec3> positions) {

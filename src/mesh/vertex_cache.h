@@ -14,8 +14,9 @@ bool HasCache(const ColliderSettings& settings);
 /// Whether the collider names a cache that it does not hold, or holds for another mesh.
 bool LacksCache(const ColliderSettings& settings);
 
-/// The time between two samples of the collider's cache [s]: by its `cache_rate`, or else as the file has it. There
-/// programs mean seconds or frames; nobody takes less than five samples per second or more than five per frame.
+/// The time between two samples of the collider's cache [s]: by its `cache_rate`, or else as the file has it. Where a
+/// format leaves open whether that is seconds or frames: nobody takes less than five samples per second or more than
+/// five per frame.
 double SampleSeconds(const Scene& scene, const ColliderSettings& settings);
 
 /// Where the vertices of a mesh are at `time` [s], in the collider's frame [m]: between two samples of its cache on the

@@ -27,14 +27,15 @@ class Bench(ProgramTest):
         self.assertTrue(all(scale["peak_bytes"] > 1e6 and scale["newton"] >= 1 for scale in data["scaling"]))
         self.assertEqual([(target["measured"], target["holds"]) for target in data["targets"]], [("equal", True)])
         self.assertTrue((self.folder / "a/b/fabric.html").exists())
+        self.assertEqual(json.loads((self.folder / "a/b/fabric.json").read_text(encoding="utf-8")), data)
 
     def test_fabric_table_and_page(self):
         done = self.run_program("bench", "fabric", "--sizes", "10", "--frames", "21", "--threads", "3")
         for text in ("10 x 10 vertices, 64 times cotton's stiffness", "3 threads", "times faster than XPBD",
                      "equal to the last bit"):
             self.assertIn(text, done.stdout)
-        self.assertEqual(self.files(), ["benchmarks"] + ["benchmarks/fabric" + name
-                                                         for name in (".html", "_cost.svg", "_error.svg")])
+        self.assertEqual(self.files(), ["benchmarks"] + ["benchmarks/fabric" + name for name in
+                                                         (".html", ".json", ".txt", "_cost.svg", "_error.svg")])
         for name in ("cost", "error"):
             plot = xml.etree.ElementTree.parse(self.folder / f"benchmarks/fabric_{name}.svg").getroot()
             self.assertEqual(plot.tag, "{http://www.w3.org/2000/svg}svg")
@@ -46,8 +47,9 @@ class Bench(ProgramTest):
     def test_springs_beside_the_plain_twin(self):
         done = self.run_program("bench", "springs", "--sizes", "12", "--frames", "4", "--json")
         data = json.loads(done.stdout)
-        self.assertTrue(data)
+        self.assertTrue(all(run["equal"] for run in data["ns_per_point_and_step"]))
         self.assertEqual(self.files(), [])
+        self.keeps_what_it_prints("springs", "--frames", "1")
 
     def test_what_contact_costs(self):
         done = self.run_program("bench", "contact", "--sizes", "12", "--frames", "40", "--threads", "2", "--json")
@@ -58,12 +60,27 @@ class Bench(ProgramTest):
                           (("drape", "falls"), ("drape", "lands"), ("drape", "rests in folds"), ("no contact", "swings"))})
         self.assertIn({"what": "intersections", "goal": "0", "measured": "0", "holds": True}, data["targets"])
         self.assertEqual(self.files(), [])
+        self.keeps_what_it_prints("contact", "--frames", "4", "--threads", "1")
+
+    def keeps_what_it_prints(self, name, *arguments):
+        """With -o the folder holds the tables that are printed, and the same as JSON."""
+        done = self.run_program("bench", name, "--sizes", "8", *arguments, "-o", "kept/here")
+        self.assertEqual(self.files(), ["kept", "kept/here", f"kept/here/{name}.json", f"kept/here/{name}.txt"])
+        table = (self.folder / f"kept/here/{name}.txt").read_text(encoding="utf-8")
+        self.assertGreater(table.count("\n"), 5)
+        self.assertTrue(done.stdout.startswith(table))
+        self.assertIn(f"{name}.txt", done.stdout[len(table):])
+        self.assertTrue(json.loads((self.folder / f"kept/here/{name}.json").read_text(encoding="utf-8")))
 
     def test_an_unwritable_place_shows_before_the_work(self):
         (self.folder / "benchmarks").write_text("a file")
         done = self.run_program("bench", "fabric", "--sizes", "10", code=1)
         self.assertIn("benchmarks", done.stderr)
         self.assertNotIn("stiffness", done.stderr)
+        for name in ("springs", "contact"):
+            done = self.run_program("bench", name, "--sizes", "10", "-o", "benchmarks", code=1)
+            self.assertIn("benchmarks", done.stderr)
+            self.assertEqual(done.stdout, "")
 
 
 if __name__ == "__main__":

@@ -151,6 +151,18 @@ class Shot(ProgramTest):
         self.assertEqual(self.shot("told.png", name="again.png")[:3], told[:3])
         self.assertEqual(self.shot("told.png", "--size", "32x20", name="small.png")[:2], (32, 20))
 
+    def test_a_picture_names_meshes_as_from_the_project(self):
+        scene = [ROOT / "scene/gauntlet/funnel.json", "--size", "24x18", "--frame", 0]
+        told = self.shot(*scene, "-r", ROOT, name="told.png")
+        self.assertNotIn(str(ROOT), told[3]["percale:scene"])
+        self.assertIn('"scene/meshes/funnel.obj"', told[3]["percale:scene"])
+        self.assertEqual(self.shot("told.png", "-r", ROOT, name="again.png")[:3], told[:3])
+        for name in ("shaders", "textures"):
+            shutil.copytree(ROOT / name, self.folder / "bare" / name)
+        (self.folder / "bare/scene").mkdir()
+        done = self.run_program("shot", "told.png", "-r", "bare", "-o", "lost.png", code=3)
+        self.assertRegex(done.stderr, r'told\.png: error: its scene needs the file "scene/meshes/funnel.obj".*, bare; put')
+
     def test_every_shader(self):
         names = sorted(p.stem for p in (ROOT / "shaders").glob("*.frag"))
         for shader in (name for name in names if "." not in name):  # NAME.plane is a part of NAME.

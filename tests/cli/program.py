@@ -9,6 +9,8 @@ import tempfile
 import unittest
 
 PERCALE = os.environ.get("PERCALE", "build/dev/bin/percale")
+# Under a sanitizer, which is slow, what is done again and again is done less often: tests/sanitized.h.
+SANITIZED = os.environ.get("PERCALE_SANITIZED") == "1"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "math/splitmix64.h"
+#include "tests/sanitized.h"
 
 using namespace percale;
 
@@ -208,7 +209,7 @@ TEST_CASE("a cloth that drifts through boxes, for thousands of updates") {
       start[p] = keyAt(x[p], y[p]);
     }
     Moving moving(start);
-    for (int update = 0; update < 2500; ++update) {
+    for (int update = 0; update < test::Fewer(2500); ++update) {
       CAPTURE(update);
       for (std::size_t p = 0; p < x.size(); ++p) {
         x[p] += speed * (1 + 0.5 * random.NextUnit());

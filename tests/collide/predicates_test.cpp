@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "math/splitmix64.h"
+#include "tests/sanitized.h"
 
 using namespace percale;
+using namespace percale::test;
 
 namespace {
 
@@ -196,7 +198,7 @@ TEST_CASE("a point is above, below or in a plane") {
 TEST_CASE("on a small lattice, where every ninth four lies in a plane, no sign is wrong at any size") {
   SplitMix64 random(1);
   int zeros = 0;
-  for (int i = 0; i < 60000; ++i) {
+  for (int i = 0; i < Fewer(60000); ++i) {
     // Far from the origin the lattice's differences are still exact; very large and small ones are as well.
     const int scale = static_cast<int>(Uniform(random, -200, 200));
     const double far = random.Next() % 2 == 0 ? 0 : 1024;
@@ -208,13 +210,13 @@ TEST_CASE("on a small lattice, where every ninth four lies in a plane, no sign i
     for (Vec2& x : q) x = {coordinate(), coordinate()};
     CHECK(Orient2d(q[0], q[1], q[2]) == ReferenceOrient2d(q, 260));
   }
-  CHECK(zeros > 5000);
+  CHECK(zeros > Fewer(5000));
 }
 
 TEST_CASE("of points within rounding of a plane, with all digits in use, no sign is wrong") {
   SplitMix64 random(2);
   std::array<int, 3> seen{};
-  for (int i = 0; i < 60000; ++i) {
+  for (int i = 0; i < Fewer(60000); ++i) {
     std::array<Vec3, 4> p;
     const auto coordinate = [&] { return 2 * random.NextUnit() - 1; };
     const double offset = i % 3 == 0 ? 1000.0 : 0.0;
@@ -224,14 +226,14 @@ TEST_CASE("of points within rounding of a plane, with all digits in use, no sign
     if (i % 2 == 0) p[3].z = std::nextafter(p[3].z, i % 4 == 0 ? 1e6 : -1e6);
     ++seen[std::size_t(1 + CheckOrient3d(p, 120))];
   }
-  CHECK(seen[0] > 10000);
-  CHECK(seen[2] > 10000);
+  CHECK(seen[0] > Fewer(10000));
+  CHECK(seen[2] > Fewer(10000));
 }
 
 TEST_CASE("of points within rounding of a line, with all digits in use, no sign is wrong") {
   SplitMix64 random(9);
   std::array<int, 3> seen{};
-  for (int i = 0; i < 60000; ++i) {
+  for (int i = 0; i < Fewer(60000); ++i) {
     const double offset = i % 3 == 0 ? 1000.0 : 0.0;
     const auto coordinate = [&] { return offset + 2 * random.NextUnit() - 1; };
     std::array<Vec2, 3> p;
@@ -245,8 +247,8 @@ TEST_CASE("of points within rounding of a line, with all digits in use, no sign 
     CHECK(Orient2d(p[0], p[1], p[2]) == sign);
     CHECK(ExactOrient2d(p[0], p[1], p[2]) == sign);
   }
-  CHECK(seen[0] > 10000);
-  CHECK(seen[2] > 10000);
+  CHECK(seen[0] > Fewer(10000));
+  CHECK(seen[2] > Fewer(10000));
 }
 
 TEST_CASE("of points in a plane whose differences do not fit into a double, no sign is wrong") {
@@ -254,7 +256,7 @@ TEST_CASE("of points in a plane whose differences do not fit into a double, no s
   // smallest step it is not.
   SplitMix64 random(3);
   int zeros = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < Fewer(20000); ++i) {
     std::array<Vec3, 4> p;
     const auto coordinate = [&] {
       const auto digits = double(Uniform(random, -9, 9));
@@ -271,12 +273,12 @@ TEST_CASE("of points in a plane whose differences do not fit into a double, no s
     if (p[0].y != 0) p[0].y = std::nextafter(p[0].y, 1e9);
     CheckOrient3d(p, 250);
   }
-  CHECK(zeros > 15000);
+  CHECK(zeros > Fewer(15000));
 }
 
 TEST_CASE("coordinates of very different sizes, to the ends of the range") {
   SplitMix64 random(4);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < Fewer(5000); ++i) {
     std::array<Vec3, 4> p;
     const auto coordinate = [&] { return random.Next() % 8 == 0 ? 0 : Wild(random, -298, 297); };
     for (Vec3& x : p) x = {coordinate(), coordinate(), coordinate()};
@@ -293,7 +295,7 @@ TEST_CASE("coordinates of very different sizes, to the ends of the range") {
 
 TEST_CASE("near the smallest coordinates products underflow, and no sign is wrong") {
   SplitMix64 random(5);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < Fewer(5000); ++i) {
     std::array<Vec3, 4> p;
     const auto coordinate = [&] { return Wild(random, -298, -290); };
     for (Vec3& x : p) x = {coordinate(), coordinate(), coordinate()};
@@ -308,7 +310,7 @@ TEST_CASE("near the smallest coordinates products underflow, and no sign is wron
 
 TEST_CASE("two points swapped turn the sign") {
   SplitMix64 random(6);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < Fewer(3000); ++i) {
     std::array<Vec3, 4> p;
     for (Vec3& x : p) x = {random.NextUnit(), random.NextUnit(), random.NextUnit()};
     if (i % 2 == 0) p[3] = p[0] + 0.3 * (p[1] - p[0]) + 0.3 * (p[2] - p[0]);
@@ -324,7 +326,7 @@ TEST_CASE("two points swapped turn the sign") {
 TEST_CASE("a segment and a triangle of a lattice meet just when their difference has the origin, collapsed or not") {
   SplitMix64 random(7);
   int meeting = 0;
-  for (int i = 0; i < 200000; ++i) {
+  for (int i = 0; i < Fewer(200000); ++i) {
     // Flat in a third of the cases, on a line in some.
     const std::int64_t size = 1 + i % 3;
     const int flat = i % 9;
@@ -351,12 +353,12 @@ TEST_CASE("a segment and a triangle of a lattice meet just when their difference
       CHECK(SegmentMeetsTriangle(v[0], v[1], v[4], v[3], v[2]) == expected);
     }
   }
-  CHECK(meeting > 20000);
+  CHECK(meeting > Fewer(20000));
 }
 
 TEST_CASE("a segment along a side of a triangle, of so many digits that products are rounded") {
   SplitMix64 random(10);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < Fewer(20000); ++i) {
     const auto corner = [&] {
       constexpr std::int64_t kMost = std::int64_t{1} << 40;
       const auto coordinate = [&] { return 8 * double(Uniform(random, -kMost, kMost)); };
@@ -377,7 +379,7 @@ TEST_CASE("a segment along a side of a triangle, of so many digits that products
 TEST_CASE("a segment from a corner runs on a triangle just when the rest of it meets the triangle") {
   SplitMix64 random(8);
   int running = 0;
-  for (int i = 0; i < 60000; ++i) {
+  for (int i = 0; i < Fewer(60000); ++i) {
     const std::int64_t size = 1 + i % 2;
     std::array<Lattice, 4> p;  // q, a, b, c
     for (Lattice& x : p) {
@@ -397,5 +399,5 @@ TEST_CASE("a segment from a corner runs on a triangle just when the rest of it m
     CHECK(SegmentRunsOnTriangle(place(p[0]), place(p[1]), place(p[2]), place(p[3])) == expected);
     CHECK(SegmentRunsOnTriangle(place(p[0]), place(p[1]), place(p[3]), place(p[2])) == expected);
   }
-  CHECK(running > 3000);
+  CHECK(running > Fewer(3000));
 }

@@ -16,6 +16,7 @@
 #include "fabric/system_matrix.h"
 #include "tests/fabric/decompositions.h"
 #include "tests/fabric/sheet.h"
+#include "tests/sanitized.h"
 
 using namespace percale;
 using namespace percale::fabric;
@@ -380,7 +381,8 @@ TEST_CASE("the solution is that of a direct solver") {
   }
 }
 
-TEST_CASE("iterations depend little on the size of the mesh, on its shape and on how its levels are made") {
+TEST_CASE("iterations depend little on the size of the mesh, on its shape and on how its levels are made" *
+          doctest::skip(test::kSanitized)) {
   struct Case {
     const char* name;
     Sheet sheet;

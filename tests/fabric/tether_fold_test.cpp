@@ -11,6 +11,7 @@
 #include "percale/parameters.h"
 #include "percale/world.h"
 #include "tests/fabric/cotton_scene.h"
+#include "tests/sanitized.h"
 
 using namespace percale;
 
@@ -138,7 +139,8 @@ TEST_CASE("what has set is a part of the state, and the same for any number of t
   CHECK(state.cloths[0].folds.empty());
 }
 
-TEST_CASE("a sheet that hangs from ropes draws them out by its weight over their stiffness") {
+TEST_CASE("a sheet that hangs from ropes draws them out by its weight over their stiffness" *
+          doctest::skip(test::kSanitized)) {
   for (const int ropes : {1, 2}) {
     Scene scene = Sheet(9);
     Tether tether{.cloth = 0, .points = {{0, 0}}, .anchor = {0.5, 1.6, 0}, .length = 0.25, .stiffness = 200};

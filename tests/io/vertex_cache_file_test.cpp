@@ -2,6 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
@@ -40,10 +44,33 @@ std::string PointCache(const Samples& samples, std::int32_t points = kPoints, fl
   return bytes;
 }
 
+/// Big-endian, as they stand in a file.
+std::string Bytes(std::int32_t number) {
+  std::string bytes;
+  for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(static_cast<std::uint32_t>(number) >> shift & 0xff);
+  return bytes;
+}
+std::string Bytes(float number) {
+  std::int32_t bits;
+  std::memcpy(&bits, &number, sizeof bits);
+  return Bytes(bits);
+}
+
+std::string Mdd(const std::vector<float>& times, const Samples& samples, std::int32_t points = kPoints) {
+  std::string bytes = Bytes(static_cast<std::int32_t>(samples.size())) + Bytes(points);
+  for (const float time : times) bytes += Bytes(time);
+  for (const std::vector<float>& sample : samples) {
+    for (const float x : sample) bytes += Bytes(x);
+  }
+  return bytes;
+}
+
 /// As it stands in the file, moved along x, its tip as high as `tip`.
 std::vector<float> Sample(float x, float tip = 1) {
   return {x, 0, 0, x + 1, 0, 0, 7, 7, 7, x, 1, 0, x, 0, tip, x, 0, 0};
 }
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
 struct Folder {
   Folder() : path(fs::temp_directory_path() / "percale_vertex_cache_file_test") {
@@ -133,9 +160,9 @@ TEST_CASE("What is wrong with a cache is told at its own place and at the scene'
   };
   const std::string good = PointCache({Sample(0), Sample(1)});
   check("none.pc2", "", "there is no such file");
-  check("meshes", "", "expected a vertex cache that ends in .pc2, got no extension");
+  check("meshes", "", "expected a vertex cache that ends in .pc2 or .mdd, got no extension");
   check("walk.abc", good,
-        "expected a vertex cache that ends in .pc2, got \".abc\"; export the animation as PointCache2");
+        "expected a vertex cache that ends in .pc2 or .mdd, got \".abc\"; export the animation as PointCache2 or MDD");
   check("empty.pc2", " ", "ends after 1 bytes, expected a PointCache2 header of 32 bytes; it was cut short");
   check("text.pc2", std::string(40, 'x'), "expected a PointCache2 file");
   check("cut.pc2", good.substr(0, good.size() - 5), "expected 2 frames of 6 points, 12 bytes each");
@@ -172,6 +199,94 @@ TEST_CASE("What is wrong with a cache is told at its own place and at the scene'
       "\"a.pc2\"}}",
       "test");
   CHECK(Contains(Format(box.diagnostics()), "test:2:39: error: /collider/cache: expected none, for only the shape"));
+}
+
+/// The tetrahedron at 0 s, and with the corner at the origin 3 along x at 0.5 s.
+std::string HandWrittenMdd() {
+  std::string bytes(
+      "\0\0\0\x02"
+      "\0\0\0\x06"
+      "\0\0\0\0"
+      "\x3f\0\0\0",
+      16);  // 2 frames, 6 points, 0 s, 0.5 s
+  const std::string zero("\0\0\0\0", 4), one("\x3f\x80\0\0", 4), seven("\x40\xe0\0\0", 4), three("\x40\x40\0\0", 4);
+  bytes += zero + zero + zero + one + zero + zero + seven + seven + seven + zero + one + zero + zero + zero + one +
+           zero + zero + zero;
+  bytes += three + zero + zero + one + zero + zero + seven + seven + seven + zero + one + zero + zero + zero + one +
+           three + zero + zero;
+  return bytes;
+}
+
+TEST_CASE("an MDD file moves a mesh as a PointCache2 file does, its times in seconds") {
+  const Folder folder;
+  folder.Write("meshes/walk.mdd", HandWrittenMdd());
+  const Result<Scene> scene = folder.Load("\"cache\": \"meshes/walk.mdd\"");
+  REQUIRE_MESSAGE(scene.ok(), Format(scene.diagnostics()));
+  const VertexCache& cache = *scene->colliders[0].loadedCache;
+  CHECK(cache.samples == 2);
+  CHECK(cache.spacing == 0.5);
+  CHECK(cache.inSeconds);
+  CHECK(cache.greatestMove == 3);
+  CHECK(cache.positions == std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 3, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+  // Capitals make no difference, and the first time does not count.
+  folder.Write("LATE.MDD", Mdd({9.25f, 9.5f, 9.75f}, {Sample(0), Sample(0.5f), Sample(2)}));
+  const Result<Scene> late = folder.Load("\"cache\": \"LATE.MDD\"");
+  REQUIRE_MESSAGE(late.ok(), Format(late.diagnostics()));
+  CHECK(late->colliders[0].loadedCache->spacing == 0.25);
+  CHECK(late->colliders[0].loadedCache->positions ==
+        folder.Load("\"cache\": \"meshes/walk.pc2\"")->colliders[0].loadedCache->positions);
+  // Times as programs round them: thirtieths of a second in floats, and in milliseconds.
+  std::vector<float> rounded, milliseconds;
+  for (int k = 0; k < 300; ++k) {
+    rounded.push_back(1000 + static_cast<float>(k) / 30);
+    milliseconds.push_back(std::round(1000 * static_cast<float>(k) / 30) / 1000);
+  }
+  for (const std::vector<float>& times : {rounded, milliseconds}) {
+    folder.Write("long.mdd", Mdd(times, Samples(300, Sample(0))));
+    const Result<Scene> loaded = folder.Load("\"cache\": \"long.mdd\"");
+    REQUIRE_MESSAGE(loaded.ok(), Format(loaded.diagnostics()));
+    CHECK(loaded->colliders[0].loadedCache->spacing == doctest::Approx(1.0 / 30).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("What is wrong with an MDD file is told") {
+  const Folder folder;
+  const auto check = [&](const std::string& bytes, const std::string& message) {
+    folder.Write("bad.mdd", bytes);
+    const Result<Scene> scene = folder.Load("\"cache\": \"bad.mdd\"");
+    CHECK_FALSE(scene.ok());
+    const std::string text = Format(scene.diagnostics());
+    CHECK_MESSAGE(Contains(text, "a.json:3:12: error: /collider/cache: \"bad.mdd\" cannot be used"), text);
+    CHECK_MESSAGE(Contains(text, "bad.mdd: error: " + message), text);
+  };
+  const Samples two = {Sample(0), Sample(1)};
+  const std::string good = Mdd({0, 0.5f}, two);
+  check(" ", "ends after 1 bytes, expected an MDD header of 8 bytes; it was cut short");
+  check(good.substr(0, 12),
+        "expected 2 frames of 6 points, 12 bytes each and 4 for its time, after the header, got 4 bytes");
+  check(good.substr(0, good.size() - 1), "expected 2 frames of 6 points, 12 bytes each");
+  check(good + "x", "expected 2 frames of 6 points, 12 bytes each");
+  check(std::string(40, 'x'), "expected 2021161080 frames of 2021161080 points");
+  check(PointCache(two), "expected 1347373390 frames of ");  // by its ending alone
+  check(Bytes(std::int32_t{-1}) + Bytes(kPoints), "expected a number of frames >= 0, got -1");
+  check(Bytes(std::int32_t{1}) + Bytes(std::int32_t{-6}), "expected a number of points >= 0, got -6");
+  // Counts whose product overflows to the size of the file.
+  check(Bytes(std::int32_t{0x40000000}) + Bytes(std::int32_t{0x7fffffff}) + std::string(64, '\0'),
+        "expected 1073741824 frames of 2147483647 points");
+  check(Mdd({}, {}), "expected at least one sample, got none");
+  check(Mdd({0}, {std::vector<float>(15, 0.5f)}, 5),
+        "expected as many points per sample as the mesh \"body\" has vertices in its file, 6, got 5; export both");
+  check(Mdd({0, kNaN}, two), "the time of sample 1: expected a number, got NaN");
+  check(Mdd({kInfinity, 0}, two), "the time of sample 0: expected a number, got Infinity");
+  check(Mdd({1, 0.5f}, two), "expected times that rise, got 1 s at the first and 0.5 s at the last");
+  check(Mdd({0, 0.5f, 2}, {Sample(0), Sample(1), Sample(2)}),
+        "the time of sample 1: expected 1 s, for the times of samples must be even, got 0.5 s; export every frame");
+  check(Mdd({0, 0.5f}, {Sample(0), Sample(0, kNaN)}),
+        "sample 1, vertex 4 (counted from 0): expected a coordinate within 1000 km of the origin, got NaN");
+  folder.Write("still.mdd", Mdd({0, 0}, two));
+  CHECK(Contains(Format(folder.Load("\"cache\": \"still.mdd\"").diagnostics()),
+                 "the file states 0 from sample to sample"));
+  CHECK(folder.Load("\"cache\": \"still.mdd\", \"cache_rate\": 24").ok());
 }
 
 TEST_CASE("What cannot go well with a cache is warned of") {

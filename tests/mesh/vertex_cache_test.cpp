@@ -61,6 +61,15 @@ TEST_CASE("a cache's rate is the scene's, or else its file's, in seconds or in f
   CHECK(At(scene, 0.125)[0] == Vec3{0.25, 0, 0});
 }
 
+TEST_CASE("a file that states seconds is taken by its word, however slow") {
+  Scene scene = Triangles(2);
+  VertexCache slow = *scene.colliders[0].loadedCache;
+  slow.inSeconds = true;
+  scene.colliders[0].loadedCache = std::make_shared<const VertexCache>(slow);
+  CHECK(SampleSeconds(scene, scene.colliders[0]) == 2);
+  CHECK(At(scene, 1)[0] == Vec3{0.25, 0, 0});
+}
+
 TEST_CASE("without a cache, or with one sample, the vertices rest") {
   Scene scene = Triangles(0);
   VertexCache one = *scene.colliders[0].loadedCache;

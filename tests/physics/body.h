@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A closed tube along x, as a collider whose vertices move by a cache.
+/// What the tests of moving colliders share: a sheet to meet them, and a closed tube along x whose vertices a cache
+/// moves.
 
 #include <cmath>
 #include <cstddef>
@@ -16,9 +17,30 @@
 #include <string>
 
 #include "mesh/rest_mesh.h"
+#include "percale/fabrics.h"
 #include "percale/scene.h"
+#include "percale/world.h"
 
 namespace percale::test {
+
+/// One sheet of so many cells, led by the fabric engine in 60 steps per second.
+inline Scene SheetScene(Fabric fabric, double width, double height, int columns, int rows) {
+  Scene scene;
+  scene.simulation.engine = Engine::Fabric;
+  scene.simulation.framesPerSecond = 60;
+  scene.simulation.stepsPerFrame = 1;
+  ClothSettings& sheet = scene.cloths.emplace_back();
+  SetFabric(sheet, fabric);
+  sheet.width = width, sheet.height = height;
+  sheet.numWidthPoints = columns + 1, sheet.numHeightPoints = rows + 1;
+  return scene;
+}
+
+/// The fingerprint of the state so many frames on.
+inline std::uint64_t HashAfter(World& world, int frames) {
+  for (int frame = 0; frame < frames; ++frame) world.Step();
+  return world.StateHash();
+}
 
 /// 0.7 m long, radius 0.1 m, rounded off at both ends, in 1024ths of a metre.
 inline RestMesh MakeTube() {

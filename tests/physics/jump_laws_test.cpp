@@ -18,18 +18,11 @@ constexpr double kJump = 0.1;  // [s]
 /// A cotton sheet that hangs at z = 0 from one edge, and a collider before it, which goes through to behind it
 /// at `kJump`.
 Scene Curtain(ColliderSettings collider) {
-  Scene scene;
-  scene.simulation.engine = Engine::Fabric;
-  scene.simulation.framesPerSecond = 60;
-  scene.simulation.stepsPerFrame = 1;
-  ClothSettings sheet;
-  SetFabric(sheet, Fabric::Cotton);
-  sheet.width = sheet.height = 0.6;
-  sheet.numWidthPoints = sheet.numHeightPoints = 19;
+  Scene scene = test::SheetScene(Fabric::Cotton, 0.6, 0.6, 18, 18);
+  ClothSettings& sheet = scene.cloths[0];
   sheet.rotation = {90, 0, 0};
   sheet.origin = {-0.3, 0, -0.3};
   for (int i = 0; i < 19; ++i) sheet.pinned.push_back({i, 0});
-  scene.cloths.push_back(sheet);
   collider.position = {0, 1, 0.2};
   scene.colliders.push_back(collider);
   scene.colliderMotions.push_back({.start = 0, .end = kJump, .displacement = {0, 0, -0.2 + 0.03}, .jump = true});
@@ -101,13 +94,9 @@ TEST_CASE("before and after a jump a state goes on to the same bits") {
     for (int frame = 0; frame < frames; ++frame) world.Step();
     WorldState state;
     world.Save(state);
-    const auto goOn = [](World& from) {
-      for (int frame = 0; frame < 8; ++frame) from.Step();
-      return from.StateHash();
-    };
-    const std::uint64_t hash = goOn(world);
+    const std::uint64_t hash = test::HashAfter(world, 8);
     World other(Curtain(Box()), {.threads = 3});
     other.Restore(state);
-    CHECK(goOn(other) == hash);
+    CHECK(test::HashAfter(other, 8) == hash);
   }
 }

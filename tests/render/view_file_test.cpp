@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base64.h"
 #include "io/atomic_file.h"
 #include "percale/checkpoint_file.h"
 
@@ -127,6 +128,69 @@ TEST_CASE("a picture whose texts are lost, changed or of another version is told
   std::vector<PngText> texts = good;
   texts[3].text.resize(texts[3].text.size() - 4);
   CHECK(Failure(texts).find("cut short") != std::string::npos);
+}
+
+/// A project in a folder of its own, with a sheet of four vertices that is a mesh.
+fs::path MakeProject() {
+  const fs::path project = Folder() / "project";
+  fs::remove_all(project);
+  fs::create_directories(project / "scene/meshes");
+  std::ofstream(project / "scene/meshes/sheet.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n";
+  std::ofstream(project / "scene/a.json") << R"({"simulation": {"engine": "fabric"},
+    "cloth": {"shape": "mesh", "mesh": "meshes/sheet.obj"}})";
+  return project;
+}
+
+TEST_CASE("a picture names no folder of the machine, and finds its meshes from its own folder or the project's") {
+  const fs::path project = MakeProject();
+  const std::string there = (project / "scene/meshes/sheet.obj").string();
+  Result<Scene> scene = LoadScene(project / "scene/a.json");
+  REQUIRE_MESSAGE(scene.ok(), Format(scene.diagnostics()));
+  SUBCASE("as the scene names them") {}
+  SUBCASE("with absolute paths in the scene") {
+    *scene = WithAbsolutePaths(*scene);
+    REQUIRE(scene->cloths[0].mesh == there);
+  }
+  World world(*scene);
+  world.Step();
+  WorldState state;
+  world.Save(state);
+  const View view = View::ForScene(*scene);
+  const auto write = [&](const fs::path& picture, const fs::path& from, const WorldState* with) {
+    const std::vector<PngText> texts = DescribePicture(*scene, view, 1, with, from);
+    for (const PngText& text : texts) {
+      const std::string plain = text.keyword == "percale:state" ? FromBase64(text.text).value() : text.text;
+      CHECK(plain.find(project.string()) == std::string::npos);
+    }
+    fs::create_directories(picture.parent_path());
+    REQUIRE(WritePng(picture, MakeImage(3, 2), {.text = texts}));
+  };
+  const auto findsIt = [&](const fs::path& picture, const fs::path& from) {
+    const Result<ViewFile> opened = OpenViewFile(picture, from);
+    REQUIRE_MESSAGE(opened.ok(), Format(opened.diagnostics()));
+    CHECK(opened->scene.cloths[0].mesh == there);
+    REQUIRE(opened->state);
+    CHECK(opened->state->scene->cloths[0].mesh == there);
+    World other(*opened->state->scene);
+    other.Restore(*opened->state);
+    CHECK(other.StateHash() == world.StateHash());
+  };
+  const fs::path elsewhere = Folder() / "elsewhere/picture.png", beside = project / "scene/picture.png";
+  write(elsewhere, project, &state);
+  findsIt(elsewhere, project);
+  // Without a project, names go from the scene's folder.
+  write(beside, {}, &state);
+  findsIt(beside, {});
+  write(elsewhere, {}, nullptr);
+  const Result<ViewFile> lost = OpenViewFile(elsewhere, project);
+  REQUIRE_FALSE(lost);
+  const std::string message = Format(lost.diagnostics());
+  CHECK_MESSAGE(message.find("needs the file \"meshes/sheet.obj\", which was looked for from these folders: ") !=
+                    std::string::npos,
+                message);
+  CHECK(message.find(elsewhere.parent_path().string()) != std::string::npos);
+  fs::remove_all(project);
+  fs::remove_all(elsewhere.parent_path());
 }
 
 TEST_CASE("a picture of others tells nothing, and that is told") {

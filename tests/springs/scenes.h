@@ -9,24 +9,9 @@
 #include "math/splitmix64.h"
 #include "percale/scene.h"
 #include "percale/world.h"
+#include "tests/sanitized.h"
 
 namespace percale::test {
-
-/// Sanitizers look for other faults and make everything ten times slower: a tenth of the frames.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
-#else
-inline constexpr bool kSanitized = false;
-#endif
-inline constexpr int Frames(int frames) {
-  return kSanitized ? (frames + 9) / 10 : frames;
-}
 
 inline constexpr const char* kCourseScenes[] = {"pinned2", "pinned4", "sphere", "plane", "selfCollision"};
 

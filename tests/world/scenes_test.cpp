@@ -10,6 +10,7 @@
 
 #include "percale/scene_file.h"
 #include "percale/world.h"
+#include "tests/sanitized.h"
 
 namespace percale {
 namespace {
@@ -26,7 +27,7 @@ TEST_CASE("Every scene of the project stays whole for its first second") {
     const Result<Scene> scene = LoadScene(file);
     REQUIRE(scene);
     World world(*scene);
-    for (int frame = 0; frame < scene->simulation.framesPerSecond; ++frame) world.Step();
+    for (int frame = 0; frame < test::Frames(scene->simulation.framesPerSecond); ++frame) world.Step();
     CHECK_FALSE(world.report().divergence.has_value());
     // Provot's one sweep leaves some springs a little above 1.1 times their length. Around a lone pin, which carries
     // all the weight, the yarns of a fabric lock.
@@ -42,7 +43,7 @@ TEST_CASE("Every scene of the project stays whole for its first second") {
   }
 }
 
-TEST_CASE("The curtain opens, and closes again") {
+TEST_CASE("The curtain opens, and closes again" * doctest::skip(test::kSanitized)) {
   const Result<Scene> scene = LoadScene("scene/curtain.json");
   REQUIRE(scene);
   World world(*scene);
