@@ -133,7 +133,7 @@ struct IntersectionJudge::Impl {
   };
 
   int vertices, obstacles;
-  std::vector<Corners> corners;        // per triangle
+  std::span<const Triangle> triangles;
   std::vector<std::uint8_t> ownsSide;  // per triangle: bit k if it stands for the edge from corner k to the next
   std::span<const Vec3> positions;     // while they are judged
   std::vector<Vec3> seen;              // positions as they count, in the frame of the boxes
@@ -142,23 +142,20 @@ struct IntersectionJudge::Impl {
   std::vector<Node> nodes;
   std::vector<Found> found;  // per chunk of leaves
 
-  Impl(int vertexCount, std::span<const Triangle> triangles, int obstaclesBegin)
-      : vertices(vertexCount), obstacles(obstaclesBegin), ownsSide(triangles.size()) {
+  Impl(int vertexCount, std::span<const Triangle> ofMesh, int obstaclesBegin)
+      : vertices(vertexCount), obstacles(obstaclesBegin), triangles(ofMesh), ownsSide(triangles.size()) {
     struct Side {
       std::int32_t a, b, triangle, corner;
     };
     std::vector<Side> sides;
     sides.reserve(3 * triangles.size());
-    corners.reserve(triangles.size());
-    for (const Triangle& t : triangles) {
-      const Corners c = {t.a, t.b, t.c};
-      const auto number = static_cast<std::int32_t>(corners.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const Corners c = CornersOf(t);
       for (std::int32_t k = 0; k < 3; ++k) {
         const std::int32_t from = c[Z(k)], to = c[Z((k + 1) % 3)];
         assert(from >= 0 && from < vertexCount && from != to);
-        sides.push_back({std::min(from, to), std::max(from, to), number, k});
+        sides.push_back({std::min(from, to), std::max(from, to), static_cast<std::int32_t>(t), k});
       }
-      corners.push_back(c);
     }
     // Each edge is asked about once, by the lowest of its triangles.
     std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
@@ -170,15 +167,16 @@ struct IntersectionJudge::Impl {
     }
     sides = std::vector<Side>();  // unlike `= {}` that gives the memory back
     seen.resize(Z(vertices));
-    placed.resize(corners.size());
+    placed.resize(triangles.size());
     for (std::size_t t = 0; t < placed.size(); ++t) placed[t].triangle = static_cast<std::int32_t>(t);
     const std::size_t leaves = Leaves();
     nodes.resize(leaves == 0 ? 0 : 2 * leaves - 1);
     found.resize((leaves + kChunkLeaves - 1) / kChunkLeaves);
   }
 
-  std::size_t Leaves() const { return (corners.size() + kLeafTriangles - 1) / kLeafTriangles; }
-  std::size_t LeafBegin(std::size_t leaf) const { return std::min(leaf * kLeafTriangles, corners.size()); }
+  std::size_t Leaves() const { return (triangles.size() + kLeafTriangles - 1) / kLeafTriangles; }
+  std::size_t LeafBegin(std::size_t leaf) const { return std::min(leaf * kLeafTriangles, triangles.size()); }
+  Corners CornersOf(std::size_t t) const { return {triangles[t].a, triangles[t].b, triangles[t].c}; }
   bool IsObstacle(std::int32_t vertex) const { return vertex >= obstacles; }
 
   /// A position as it counts.
@@ -193,11 +191,11 @@ struct IntersectionJudge::Impl {
 
   void TakePositions(const Executor& executor) {
     ChooseFrame();
-    const std::size_t chunks = (corners.size() + kChunkTriangles - 1) / kChunkTriangles;
+    const std::size_t chunks = (triangles.size() + kChunkTriangles - 1) / kChunkTriangles;
     executor.ForChunks(static_cast<int>(chunks), [&](int chunk) {
       const std::size_t begin = std::size_t(chunk) * kChunkTriangles;
-      for (std::size_t i = begin; i < std::min(begin + kChunkTriangles, corners.size()); ++i) {
-        Bounds b = BoundsOf(corners[Z(placed[i].triangle)]);
+      for (std::size_t i = begin; i < std::min(begin + kChunkTriangles, triangles.size()); ++i) {
+        Bounds b = BoundsOf(CornersOf(Z(placed[i].triangle)));
         b.Widen(slack);
         placed[i].box = Round(b);
       }
@@ -210,7 +208,8 @@ struct IntersectionJudge::Impl {
     for (std::int32_t v = 0; v < vertices; ++v) seen[Z(v)] = At(v);
     double longest = 0, farthest = 0, straight = 0;
     Vec3 along{1, 0, 0}, across{0, 1, 0};
-    for (const Corners& c : corners) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const Corners c = CornersOf(t);
       straight += BoundsOf(c).Area();
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 side = seen[Z(c[(k + 1) % 3])] - seen[Z(c[k])];
@@ -227,7 +226,7 @@ struct IntersectionJudge::Impl {
       p = {Dot(along, p), Dot(third, p), Dot(normal, p)};
     }
     double turned = 0;
-    for (const Corners& c : corners) turned += BoundsOf(c).Area();
+    for (std::size_t t = 0; t < triangles.size(); ++t) turned += BoundsOf(CornersOf(t)).Area();
     // What has a point in common has overlapping exact bounds along any direction. Each end of theirs is wrong by three
     // roundings of at most `farthest`, and widening adds one.
     constexpr double kHalfUlp = 0x1p-53;
@@ -290,7 +289,7 @@ struct IntersectionJudge::Impl {
     node.obstaclesOnly = true;
     for (std::size_t i = LeafBegin(node.firstLeaf); i < LeafBegin(node.endLeaf); ++i) {
       node.box.Add(placed[i].box);
-      node.obstaclesOnly = node.obstaclesOnly && IsObstacle(corners[Z(placed[i].triangle)][0]);
+      node.obstaclesOnly = node.obstaclesOnly && IsObstacle(triangles[Z(placed[i].triangle)].a);
     }
   }
 
@@ -339,9 +338,10 @@ struct IntersectionJudge::Impl {
     bool obstaclesOnly = true;
     for (std::size_t i = LeafBegin(leaf); i < LeafBegin(leaf + 1); ++i) {
       const std::size_t t = Z(placed[i].triangle);
+      const Corners c = CornersOf(t);
       for (std::size_t k = 0; k < 3; ++k) {
         if ((ownsSide[t] >> k & 1) == 0) continue;
-        const std::int32_t from = corners[t][k], to = corners[t][(k + 1) % 3];
+        const std::int32_t from = c[k], to = c[(k + 1) % 3];
         OwnEdge& edge = edges[count++] = {std::min(from, to), std::max(from, to), {}};
         Bounds bounds;
         bounds.Add(seen[Z(from)]);
@@ -369,7 +369,7 @@ struct IntersectionJudge::Impl {
         }
         for (std::size_t k = 0; k < nearCount; ++k) {
           const std::int32_t t = placed[near[k]].triangle;
-          if (Meet(edges[e], corners[Z(t)])) out.Add({{edges[e].a, edges[e].b}, t}, most);
+          if (Meet(edges[e], CornersOf(Z(t)))) out.Add({{edges[e].a, edges[e].b}, t}, most);
         }
       }
     }
@@ -387,7 +387,7 @@ IntersectionJudge& IntersectionJudge::operator=(IntersectionJudge&&) noexcept = 
 IntersectionCount IntersectionJudge::Count(std::span<const Vec3> positions, const Executor& executor, int most) {
   Impl& impl = *impl_;
   assert(positions.size() == impl.seen.size() && most >= 0);
-  if (impl.corners.empty()) return {};
+  if (impl.triangles.empty()) return {};
   impl.positions = positions;
   impl.TakePositions(executor);
   impl.BuildTree(executor);

@@ -36,7 +36,8 @@ struct IntersectionCount {
 /// Several meshes are given as one, indices shifted.
 class IntersectionJudge {
  public:
-  /// The corners of each triangle are three different ones of the vertices 0 .. vertices - 1.
+  /// The corners of each triangle are three different ones of the vertices 0 .. vertices - 1. The triangles must
+  /// outlive it.
   IntersectionJudge(int vertices, std::span<const Triangle> triangles);
   /// Vertices from `obstacles` on belong to obstacles, which may intersect one another.
   IntersectionJudge(int vertices, std::span<const Triangle> triangles, int obstacles);

@@ -38,7 +38,6 @@ double FloorOf(double gap, double distance) {
 SafeMove::SafeMove(const ContactMesh& mesh, const Executor& executor)
     : mesh_(mesh), executor_(executor), finder_(mesh, executor) {
   for (std::vector<std::uint8_t>* flags : {&cut_, &changed_, &next_}) flags->resize(Index(mesh.vertices()));
-  least_.resize(Index(mesh.vertices()));
 }
 
 void SafeMove::Clear() {
@@ -109,9 +108,14 @@ std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
           ShareApart(kKinds[kind], Gather(ways.start, v), way, pairs.start[p], FloorOf(gap, pairs.distance[p]));
     }
   });
+  const auto fails = [](double share) { return share < 1; };
+  if (std::none_of(shares_[0].begin(), shares_[0].end(), fails) &&
+      std::none_of(shares_[1].begin(), shares_[1].end(), fails)) {
+    return 0;
+  }
   std::int64_t failed = 0;
   std::fill(next_.begin(), next_.end(), std::uint8_t{0});
-  std::fill(least_.begin(), least_.end(), 1.0);
+  least_.assign(next_.size(), 1.0);
   for (std::size_t kind = 0; kind < 2; ++kind) {
     for (std::size_t p = 0; p < pairs_[kind].size(); ++p) {
       double share = shares_[kind][p];

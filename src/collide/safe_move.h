@@ -84,10 +84,10 @@ class SafeMove {
   const Executor& executor_;
   PairFinder finder_;
   const Untangler* untangler_ = nullptr;
-  NearPairs pairs_[2];                              // by kind
-  std::vector<double> shares_[2];                   // per pair, of the last test
-  std::vector<Vec3> limited_;                       // per vertex: the way that it may go; none before LimitWays
-  std::vector<double> least_;                       // per vertex: of the pairs that fail in a sweep
+  NearPairs pairs_[2];             // by kind
+  std::vector<double> shares_[2];  // per pair, of the last test
+  std::vector<Vec3> limited_;      // per vertex: the way that it may go; none before LimitWays
+  std::vector<double> least_;      // per vertex: of the pairs that fail in a sweep; none before any did
   std::vector<std::uint8_t> cut_, changed_, next_;  // per vertex
 };
 

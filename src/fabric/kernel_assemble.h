@@ -37,44 +37,24 @@ inline void StoreBlock(Columns a, Real s, Real* block) {
   for (int r = 0; r < 3; ++r) block[6 + r] = a.c[2][r];
 }
 
-/// Blocks of a row that are summed at once; most rows have fewer.
-constexpr int kRowBlocks = 8;
-
-/// Blocks [begin, begin + kRowBlocks) of a row, and what does not count in the last. Returns the sum of all blocks off
-/// the diagonal.
-inline Columns SumCorners(const AssembleArgs& a, int row, std::uint32_t begin, Columns (&blocks)[kRowBlocks + 1]) {
-  Columns sum;
-  const auto add = [&](const Columns& block, std::uint16_t slot) {
-    sum += block;
-    const std::uint32_t place = slot - begin;
-    blocks[place < kRowBlocks ? place : kRowBlocks] += block;
-  };
-  for (std::int32_t e = a.cornerFirst[row]; e < a.cornerFirst[row + 1]; ++e) {
-    const std::int32_t triangle = a.corner[e] / 3, corner = a.corner[e] - 3 * triangle;
-    const std::int32_t ahead = triangle - a.firstTriangle;
-    const Real* hessian =
-        a.hessian + kHessianReals * static_cast<std::int64_t>(ahead < a.triangles ? ahead : ahead - a.triangles);
-    add(LoadColumns(hessian + 9 * corner), a.slot[2 * static_cast<std::int64_t>(e)]);
-    add(Transposed(LoadColumns(hessian + 9 * (corner == 0 ? 2 : corner - 1))),
-        a.slot[2 * static_cast<std::int64_t>(e) + 1]);
-  }
-  return sum;
-}
-
 void Assemble(const AssembleArgs& a) {
   for (int row = a.begin; row < a.end; ++row) {
-    const std::int32_t diagonal = a.storedFirst[row];
-    const auto count = static_cast<std::uint32_t>(a.storedFirst[row + 1] - diagonal);
-    for (std::uint32_t begin = 0; begin < count; begin += kRowBlocks) {
-      Columns blocks[kRowBlocks + 1];
-      Columns sum = SumCorners(a, row, begin, blocks);
-      if (begin == 0) {
-        for (int k = 0; k < 3; ++k) blocks[0].c[k] = -sum.c[k];
+    Columns sum;
+    std::int32_t next = a.storedFirst[row] + 1;
+    for (std::int32_t k = a.first[row]; k < a.first[row + 1]; ++k) {
+      if (a.column[k] == row) continue;
+      Columns block;
+      for (std::int32_t e = a.sameFirst[k]; e < a.sameFirst[k + 1]; ++e) block += LoadColumns(a.hessian + a.same[e]);
+      for (std::int32_t e = a.transposedFirst[k]; e < a.transposedFirst[k + 1]; ++e) {
+        block += Transposed(LoadColumns(a.hessian + a.transposed[e]));
       }
-      for (std::uint32_t k = 0; k < kRowBlocks && begin + k < count; ++k) {
-        const std::int64_t at = diagonal + static_cast<std::int64_t>(begin + k);
-        StoreBlock(blocks[k], a.constant[at], a.blocks + 9 * at);
-      }
+      sum += block;
+      if (a.column[k] < row) continue;
+      StoreBlock(block, a.constant[next], a.blocks + 9 * static_cast<std::int64_t>(next));
+      ++next;
     }
+    for (Floats4& c : sum.c) c = -c;
+    const std::int32_t diagonal = a.storedFirst[row];
+    StoreBlock(sum, a.constant[diagonal], a.blocks + 9 * static_cast<std::int64_t>(diagonal));
   }
 }

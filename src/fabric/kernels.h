@@ -75,15 +75,18 @@ struct PlateArgs {
 /// Some rows of the matrix. Arrays are from the first row, block or triangle of all on.
 struct AssembleArgs {
   int begin, end;
+  const std::int32_t* first;        ///< As in BlockPattern.
+  const std::int32_t* column;       ///< As in BlockPattern.
   const std::int32_t* storedFirst;  ///< As SystemMatrix has it: blocks left of the diagonal are not stored.
   const Real* constant;             ///< Per stored block the scalar that stands on its diagonal besides.
-  const std::int32_t* cornerFirst;
-  const std::int32_t* corner;  ///< FabricModel::corners.
-  const std::uint16_t* slot;   ///< Per corner of that list two: see CornerSlots.
-  int firstTriangle;           ///< Of those in `hessian`: the first, or one before.
-  int triangles;               ///< There are so many; the one of that number is at the begin again.
-  const Real* hessian;         ///< As MembraneArgs has it.
-  Real* blocks;                ///< Out.
+  // Per block off the diagonal the blocks of triangles that it is the sum of, as places in `hessian`: as they are, and
+  // transposed. Those of block k are [first[k], first[k + 1]).
+  const std::int32_t* sameFirst;
+  const std::int32_t* same;
+  const std::int32_t* transposedFirst;
+  const std::int32_t* transposed;
+  const Real* hessian;  ///< As MembraneArgs has it.
+  Real* blocks;         ///< Out.
 };
 
 /// Some rows of a SystemMatrix and vectors over all rows. Arrays are from the first row or block of all on.

@@ -30,12 +30,10 @@ Vector3<double> At(std::span<const Vec3> y, std::int32_t v) {
 
 Objective::Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor,
                      const Kernels& kernels)
-    : model_(model),
-      executor_(executor),
-      kernels_(kernels),
-      slots_(CornerSlots(pattern, model.triangles, model.corners.entry)) {
+    : model_(model), pattern_(pattern), executor_(executor), kernels_(kernels) {
   const std::size_t triangles = model.triangles.size();
   FindWindow();
+  FindParts();
   for (int c = 0; c < model.Cloths(); ++c) {
     const int end = model.firstTriangle[Index(c) + 1];
     for (int t = model.firstTriangle[Index(c)]; t < end; t += kRowsPerChunk) {
@@ -78,6 +76,17 @@ void Objective::FindWindow() {
 /// Where what is evaluated of a triangle lies.
 std::int32_t Objective::Place(std::int64_t triangle) const {
   return static_cast<std::int32_t>(triangle % (static_cast<std::int64_t>(window_.slots) * kRowsPerChunk));
+}
+
+/// Which blocks of triangles each block of the matrix is the sum of.
+void Objective::FindParts() {
+  const std::vector<std::array<std::int32_t, 9>> blocks = TriangleBlocks(pattern_, model_.triangles);
+  const std::size_t count = 3 * blocks.size();  // 3 t + k is corner k of triangle t with corner k + 1
+  same_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][e % 3 * 3 + (e + 1) % 3]; });
+  transposed_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][(e + 1) % 3 * 3 + e % 3]; });
+  for (Lists* lists : {&same_, &transposed_}) {
+    for (std::int32_t& e : lists->entry) e = Place(e / 3) * kHessianReals + e % 3 * 9;
+  }
 }
 
 /// Sums body(begin, end) over chunks of 0..count-1, in order.
@@ -297,19 +306,18 @@ double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gr
     for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
   };
   SumMoments(y);
-  const int live = window_.slots * kRowsPerChunk;
   ForRows(y, true, [&](int begin, int end) {
     Gather(y, gradient, begin, end);
-    const int oldest = std::max(0, window_.end[Index(begin / kRowsPerSlab)] * kRowsPerChunk - live);
     kernels_.assemble({.begin = begin,
                        .end = end,
+                       .first = pattern_.first.data(),
+                       .column = pattern_.column.data(),
                        .storedFirst = matrix.storedFirst().data(),
                        .constant = matrix.constant().data(),
-                       .cornerFirst = model_.corners.first.data(),
-                       .corner = model_.corners.entry.data(),
-                       .slot = slots_.data(),
-                       .firstTriangle = oldest / live * live,
-                       .triangles = live,
+                       .sameFirst = same_.first.data(),
+                       .same = same_.entry.data(),
+                       .transposedFirst = transposed_.first.data(),
+                       .transposed = transposed_.entry.data(),
                        .hessian = triangleHessian_.data(),
                        .blocks = matrix.Block(0)});
     for (int v = begin; v < end && !step_.loads.empty(); ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);

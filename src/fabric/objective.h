@@ -71,6 +71,7 @@ class Objective {
   PointEnergy<double> Pull(const FabricTether& tether, std::span<const Vec3> y) const;
   double PlateEnergy(std::span<const Vec3> y);
   void FindWindow();
+  void FindParts();
   MembraneArgs Arguments(std::span<const Vec3> y, const Batch& batch);
   void EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int block);
   void AddPressure(std::span<const Vec3> y, const MembraneArgs& to, double pressure);
@@ -85,12 +86,13 @@ class Objective {
   double Sum(int count, Body&& body);
 
   const FabricModel& model_;
+  const BlockPattern& pattern_;
   const Executor& executor_;
   const Kernels& kernels_;
   StepSettings step_;
   std::span<const Fold> folds_;
   Contacts* contacts_ = nullptr;
-  std::vector<std::uint16_t> slots_;  // of model_.corners: see CornerSlots
+  Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:
   std::vector<double> startStrain_[3];

@@ -84,21 +84,16 @@ BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std:
   return pattern;
 }
 
-std::vector<std::uint16_t> CornerSlots(const BlockPattern& pattern, std::span<const Triangle> triangles,
-                                       std::span<const std::int32_t> corners) {
-  std::vector<std::uint16_t> slots;
-  slots.reserve(2 * corners.size());
-  for (const std::int32_t corner : corners) {
-    const Triangle& t = triangles[corner / 3];
-    const std::int32_t vertex[3] = {t.a, t.b, t.c};
-    const std::int32_t row = vertex[corner % 3];
-    for (const int ahead : {1, 2}) {
-      const std::int32_t slot = pattern.Find(row, vertex[(corner + ahead) % 3]) - pattern.Find(row, row);
-      assert(slot <= 0xffff);
-      slots.push_back(static_cast<std::uint16_t>(std::max(slot, 0)));
-    }
+std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
+                                                        std::span<const Triangle> triangles) {
+  std::vector<std::array<std::int32_t, 9>> blocks;
+  blocks.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    const std::int32_t corners[3] = {t.a, t.b, t.c};
+    std::array<std::int32_t, 9>& of = blocks.emplace_back();
+    for (int k = 0; k < 9; ++k) of[k] = pattern.Find(corners[k / 3], corners[k % 3]);
   }
-  return slots;
+  return blocks;
 }
 
 void AppendRow(ScalarMatrix& matrix, std::vector<std::pair<std::int32_t, double>>& row) {

@@ -42,10 +42,9 @@ struct BlockPattern {
 /// Couples the corners of each triangle, and the ends of each of `morePairs`, over `vertices` of them.
 BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std::span<const Edge> morePairs = {});
 
-/// For each corner of `corners`, 3 triangle + k, where the blocks of its vertex with the next corner of the triangle
-/// and with the one behind that are in the row of the vertex, counted from the diagonal; 0 for what lies left of that.
-std::vector<std::uint16_t> CornerSlots(const BlockPattern& pattern, std::span<const Triangle> triangles,
-                                       std::span<const std::int32_t> corners);
+/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
+std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
+                                                        std::span<const Triangle> triangles);
 
 /// A sparse matrix of scalars in compressed rows, the columns of each row ascending.
 struct ScalarMatrix {

@@ -269,13 +269,14 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
 TEST_CASE("the matrix is the sum of the triangles' blocks") {
   const test::Sheet sheet = test::Disc(4);
   const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);
-  const auto blocksOf = test::TriangleBlocks(pattern, sheet.triangles);
+  const auto blocksOf = TriangleBlocks(pattern, sheet.triangles);
   const std::size_t blocks = Index(pattern.blocks()), parts = 3 * sheet.triangles.size();
-  const Lists corners = ListBy(sheet.vertices(), parts, [&](std::size_t e) {
-    const Triangle& t = sheet.triangles[e / 3];
-    return e % 3 == 0 ? t.a : e % 3 == 1 ? t.b : t.c;
-  });
-  const std::vector<std::uint16_t> slots = CornerSlots(pattern, sheet.triangles, corners.entry);
+  Lists same = ListBy(pattern.blocks(), parts, [&](std::size_t e) { return blocksOf[e / 3][e % 3 * 3 + (e + 1) % 3]; });
+  Lists transposed =
+      ListBy(pattern.blocks(), parts, [&](std::size_t e) { return blocksOf[e / 3][(e + 1) % 3 * 3 + e % 3]; });
+  for (Lists* lists : {&same, &transposed}) {
+    for (std::int32_t& e : lists->entry) e = e / 3 * kHessianReals + e % 3 * 9;
+  }
   SplitMix64 random(3);
   RealVector hessian(kHessianReals * sheet.triangles.size(), 0);
   for (Real& entry : hessian) entry = static_cast<Real>(2 * random.NextUnit() - 1);
@@ -311,13 +312,14 @@ TEST_CASE("the matrix is the sum of the triangles' blocks") {
     for (const int begin : {0, 20}) {
       kernels->assemble({.begin = begin,
                          .end = begin == 0 ? 20 : sheet.vertices(),
+                         .first = pattern.first.data(),
+                         .column = pattern.column.data(),
                          .storedFirst = storedFirst.data(),
                          .constant = constant.data(),
-                         .cornerFirst = corners.first.data(),
-                         .corner = corners.entry.data(),
-                         .slot = slots.data(),
-                         .firstTriangle = 0,
-                         .triangles = static_cast<int>(sheet.triangles.size()),
+                         .sameFirst = same.first.data(),
+                         .same = same.entry.data(),
+                         .transposedFirst = transposed.first.data(),
+                         .transposed = transposed.entry.data(),
                          .hessian = hessian.data(),
                          .blocks = filled.data()});
     }

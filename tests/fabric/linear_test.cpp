@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -149,18 +148,10 @@ TEST_CASE("blocks are where the corners of triangles say") {
   CHECK(pattern.Find(0, 24) >= 0);
   CHECK(pattern.Find(24, 0) >= 0);
   CHECK(pattern.Find(0, 23) == -1);
-  std::vector<std::int32_t> corners(3 * sheet.triangles.size());
-  std::iota(corners.begin(), corners.end(), 0);
-  const std::vector<std::uint16_t> slots = CornerSlots(pattern, sheet.triangles, corners);
-  REQUIRE(slots.size() == 2 * corners.size());
-  for (const std::int32_t corner : corners) {
-    const Triangle& t = sheet.triangles[corner / 3];
-    const std::int32_t vertices[3] = {t.a, t.b, t.c}, row = vertices[corner % 3];
-    for (const int ahead : {1, 2}) {
-      const std::int32_t block = pattern.Find(row, row) + slots[2 * corner + ahead - 1];
-      const std::int32_t other = vertices[(corner + ahead) % 3];
-      CHECK(pattern.column[block] == std::max(row, other));
-    }
+  const auto blocks = TriangleBlocks(pattern, sheet.triangles);
+  for (std::size_t t = 0; t < blocks.size(); ++t) {
+    const int corners[3] = {sheet.triangles[t].a, sheet.triangles[t].b, sheet.triangles[t].c};
+    for (int k = 0; k < 9; ++k) CHECK(blocks[t][k] == pattern.Find(corners[k / 3], corners[k % 3]));
   }
 }
 

@@ -103,18 +103,6 @@ inline Sheet Disc(int rings) {
   return sheet;
 }
 
-/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
-inline std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const fabric::BlockPattern& pattern,
-                                                               std::span<const Triangle> triangles) {
-  std::vector<std::array<std::int32_t, 9>> blocks;
-  for (const Triangle& t : triangles) {
-    const std::int32_t corners[3] = {t.a, t.b, t.c};
-    std::array<std::int32_t, 9>& of = blocks.emplace_back();
-    for (int k = 0; k < 9; ++k) of[k] = pattern.Find(corners[k / 3], corners[k % 3]);
-  }
-  return blocks;
-}
-
 struct Cloth {
   double stiffness = 261;  // [N/m]
   double poisson = .24;
