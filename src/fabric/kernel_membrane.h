@@ -39,12 +39,12 @@ inline RestTriangle<Doubles> LoadRest(const MembraneArgs& a, int first, int coun
   const Doubles u1 = Doubles::Load(edge[0]), v1 = Doubles::Load(edge[1]);
   const Doubles u2 = Doubles::Load(edge[2]), v2 = Doubles::Load(edge[3]);
   const Doubles det = u1 * v2 - u2 * v1, none(0), size = Select(det > none, det, -det);
-  const Doubles over = Doubles(1) / size;
+  const Doubles over = Doubles(1) / det, positive = Select(det > none, over, -over);
   constexpr double kBelowNormal = 0x1.ffffffffffffep-1023;
-  const auto isNormal = Select(size > over, over, size) > Doubles(kBelowNormal);
+  const auto isNormal = Select(size > positive, positive, size) > Doubles(kBelowNormal);
   return {Select(isNormal, Doubles(0.5) * size, none) * Doubles::Load(strength),
-          {Select(isNormal, v2 / det, none), Select(isNormal, -u2 / det, none), Select(isNormal, -v1 / det, none),
-           Select(isNormal, u1 / det, none)}};
+          {Select(isNormal, v2 * over, none), Select(isNormal, -u2 * over, none), Select(isNormal, -v1 * over, none),
+           Select(isNormal, u1 * over, none)}};
 }
 
 inline Triangles LoadTriangles(const MembraneArgs& a, int first, int count) {

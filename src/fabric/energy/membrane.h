@@ -29,9 +29,9 @@ struct RestTriangle {
 template <class T = double>
 RestTriangle<T> MakeRestTriangle(const MaterialPoint& p0, const MaterialPoint& p1, const MaterialPoint& p2) {
   const double u1 = p1.u - p0.u, v1 = p1.v - p0.v, u2 = p2.u - p0.u, v2 = p2.v - p0.v;
-  const double det = u1 * v2 - u2 * v1;
-  if (!std::isnormal(1 / det) || !std::isnormal(det)) return {};
-  return {T(0.5 * std::fabs(det)), {T(v2 / det), T(-u2 / det), T(-v1 / det), T(u1 / det)}};
+  const double det = u1 * v2 - u2 * v1, over = 1 / det;
+  if (!std::isnormal(over) || !std::isnormal(det)) return {};
+  return {T(0.5 * std::fabs(det)), {T(v2 * over), T(-u2 * over), T(-v1 * over), T(u1 * over)}};
 }
 
 /// dx/du and dx/dv; unit and orthogonal at rest.
