@@ -91,6 +91,8 @@ RunEnd Run(World& world, const RunPlan& plan, const Options& options, const Sess
     sums.limitedSprings += report.limitedSprings;
     sums.jumps += report.jumps;
     sums.splits += report.splits;
+    if (report.contactBytes > sums.contactBytes) sums.contactsGrewIn = report.frame;
+    sums.contactBytes = report.contactBytes;
     sums.mostIntersections = std::max(sums.mostIntersections, report.intersections);
     progress.Update(report);
     if (onFrame() != kDone) return RunEnd::Failed;

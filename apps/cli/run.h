@@ -41,6 +41,8 @@ struct RunTotals {
   double greatestStretch = 0;
   std::int64_t selfContacts = 0, colliderContacts = 0, limitedSprings = 0;
   std::int64_t jumps = 0, mostIntersections = 0, splits = 0;
+  std::int64_t contactBytes = 0;  // as they were last,
+  int contactsGrewIn = 0;         // and since which frame
 };
 
 /// Gives frame 0 and then each frame to `onFrame`, which returns an exit code, kDone to go on.

@@ -174,6 +174,10 @@ void PrintSummary(std::FILE* out, const World& world, const RunTotals& totals, R
   std::fprintf(out, "at rest           %s\n", report.atRest ? "yes" : "no");
   std::fprintf(out, "contacts          %lld in the cloth, %lld with colliders\n",
                static_cast<long long>(totals.selfContacts), static_cast<long long>(totals.colliderContacts));
+  if (totals.contactBytes > 0) {
+    std::fprintf(out, "contact memory    %.1f MB, grew last in frame %d\n",
+                 static_cast<double>(totals.contactBytes) * 1e-6, totals.contactsGrewIn);
+  }
   if (totals.splits > 0)
     std::fprintf(out, "splits            %lld steps done over in parts\n", static_cast<long long>(totals.splits));
   if (totals.jumps > 0)

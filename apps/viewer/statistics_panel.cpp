@@ -35,6 +35,8 @@ void DrawStatisticsPanel(Session& session, UiState& state) {
   if (report.intersections > 0) FactRow(state, "Tangled yet", Text("%lld pairs", number(report.intersections)));
   if (report.squeezed > 0) FactRow(state, "Squeezed", Text("%lld vertices", number(report.squeezed)));
   if (report.lostMotion > 0) FactRow(state, "Cut short", Text("%.2g %% of all motion", report.lostMotion * 100));
+  if (report.contactBytes > 0)
+    FactRow(state, "Contact memory", Text("%.1f MB", static_cast<double>(report.contactBytes) * 1e-6));
   FactRow(state, "Drawing", Text("%.1f ms", state.drawSeconds * 1000));
   if (snapshot.framesPerSecond > 0) FactRow(state, "Speed", Text("%.0f frames/s", snapshot.framesPerSecond));
   const bool open = ImGui::TreeNode("##stages", "A frame of simulation: %.2f ms", state.frameSeconds * 1000);

@@ -44,6 +44,17 @@ void SafeMove::Clear() {
   for (NearPairs& pairs : pairs_) pairs.vertex = {};
 }
 
+std::size_t SafeMove::MemoryBytes() const {
+  const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
+  std::size_t sum =
+      finder_.MemoryBytes() + bytes(limited_) + bytes(least_) + bytes(cut_) + bytes(changed_) + bytes(next_);
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    const NearPairs& pairs = pairs_[kind];
+    sum += bytes(pairs.distance) + bytes(pairs.start) + bytes(pairs.exempt) + bytes(shares_[kind]);
+  }
+  return sum;
+}
+
 double SafeMove::DistanceOf(PairKind kind, const VertexQuad& quad, const ContactDistances& distances) const {
   const std::int32_t one = mesh_.body[Index(quad[0])], other = mesh_.body[Index(quad[3])];
   const double distance = distances.half[Index(one)] + distances.half[Index(other)];

@@ -3,6 +3,7 @@
 /// Moves all vertices of a mesh along straight lines as far as they can go without anything passing through anything.
 /// docs/contact.md has the argument why nothing can.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -62,6 +63,8 @@ class SafeMove {
   const NearPairs& edgeEdge() const { return pairs_[1]; }
   /// Forgets them.
   void Clear();
+  /// Of all that it holds.
+  std::size_t MemoryBytes() const;
 
   /// Below which two vertices of a pair count as in contact: the sum of their bodies' halves, less where they are as
   /// near in the mesh itself.

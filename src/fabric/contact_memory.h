@@ -42,6 +42,8 @@ class ContactMemory {
     return entry.used ? &entry.stick : nullptr;
   }
 
+  std::size_t Bytes() const { return entries_.capacity() * sizeof(Entry); }
+
   /// Calls body(key, stick) for all, in any order.
   template <class Body>
   void ForAll(Body&& body) const {

@@ -3,6 +3,7 @@
 /// Contact in the steps of the engine: which planes the potential of a step has, and how far all may go at its end.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -64,6 +65,9 @@ class ContactStep {
   void ReadState(std::vector<Touch>& touches, std::vector<Vec3>& obstacles) const;
   /// The same, set, after a Restart; obstacles of another number are left where they are.
   void WriteState(std::span<const Touch> touches, std::span<const Vec3> obstacles);
+
+  /// Of the lists of what is near and of contacts.
+  std::size_t MemoryBytes() const { return safeMove_.MemoryBytes() + contacts_.MemoryBytes(); }
 
   /// The greatest distance of contact of cloth [m].
   double distance() const { return distance_; }

@@ -143,6 +143,12 @@ void Contacts::Fit(double k, Contact& c) {
   c.distance = 1.5 * fit;
 }
 
+std::size_t Contacts::MemoryBytes() const {
+  const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
+  return bytes(triangles_) + bytes(border_) + bytes(contacts_) + bytes(kept_) + bytes(found_) + bytes(states_) +
+         bytes(terms_) + memory_.Bytes();
+}
+
 void Contacts::ReadMemory(std::vector<Touch>& touches) const {
   touches.clear();
   memory_.ForAll([&](const ContactKey& key, const Stick& stick) {

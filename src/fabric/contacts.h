@@ -93,6 +93,8 @@ class Contacts {
   void WriteMemory(std::span<const Touch> touches);
 
   std::span<const Contact> all() const { return contacts_; }
+  /// Of all that it holds.
+  std::size_t MemoryBytes() const;
 
  private:
   double ShareOf(PairKind kind, const VertexQuad& vertex, const std::array<double, 4>& weight) const;

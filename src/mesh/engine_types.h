@@ -24,6 +24,7 @@ struct EngineCounts {
   int jumps = 0;                                 ///< Of colliders.
   double lostWay = 0, wantedWay = 0;             ///< Of all vertices [m].
   int splits = 0;
+  std::int64_t contactBytes = 0;  ///< As it is now.
   int newtonIterations = 0, linearIterations = 0;
   double residual = 0;
   bool converged = true;

@@ -230,6 +230,7 @@ void World::Impl::FinishStep() {
   report.jumps = counts.jumps;
   report.lostMotion = counts.wantedWay > 0 ? counts.lostWay / counts.wantedWay : 0;
   report.splits = counts.splits;
+  report.contactBytes = counts.contactBytes;
   report.linearIterations = counts.linearIterations;
   report.residual = counts.residual;
   report.converged = counts.converged;

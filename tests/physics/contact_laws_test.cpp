@@ -257,6 +257,30 @@ TEST_CASE("a state with contact, friction and a moving collider goes on to the s
   CHECK(goOn(other) == hash);
 }
 
+TEST_CASE("memory of contact grows with what is near, says so, and is kept") {
+  Scene scene = FabricScene(60);
+  scene.cloths.push_back(Sheet(0.3, 0.3, 15, 15));
+  scene.cloths[0].origin = {0, -0.9, 0};
+  ColliderSettings post;
+  post.shape = ColliderShape::Box;
+  post.size = {0.02, 0.1, 0.02};
+  post.position = {0.15, 0.03, 0.15};
+  scene.colliders.push_back(post);
+  scene.planes.push_back({.point = {0, 0, 0}, .normal = {0, 1, 0}, .friction = 0.3});
+  World world(scene, {.threads = 1});
+  std::int64_t first = 0, last = 0, contacts = 0;
+  for (int frame = 0; frame < 30; ++frame) {
+    const StepReport& report = world.Step();
+    CHECK(report.contactBytes >= last);
+    last = report.contactBytes;
+    if (frame == 0) first = last;
+    contacts = std::max(contacts, report.selfContacts + report.colliderContacts);
+  }
+  CHECK(contacts > 50);
+  CHECK(first > 0);
+  CHECK(last > first + contacts * std::int64_t(sizeof(double)));
+}
+
 TEST_CASE("a step that is done over in parts ends as a step, and nothing else feels it") {
   World shot(ShotScene(true), {.threads = 1}), calm(ShotScene(false), {.threads = 1});
   ClothJudge judge(shot, 1);
