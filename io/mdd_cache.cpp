@@ -1,7 +1,7 @@
 #include "io/mdd_cache.h"
 
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "core/text.h"
 
@@ -20,10 +20,7 @@ std::uint32_t Number(const unsigned char* bytes) {
 }
 
 double Float(const unsigned char* bytes) {
-  const std::uint32_t bits = Number(bytes);
-  float number;
-  std::memcpy(&number, &bits, 4);
-  return double(number);
+  return double(std::bit_cast<float>(Number(bytes)));
 }
 
 }  // namespace

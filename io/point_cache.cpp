@@ -1,5 +1,6 @@
 #include "io/point_cache.h"
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -15,10 +16,7 @@ std::uint32_t Number(const unsigned char* bytes) {
 }
 
 double Float(const unsigned char* bytes) {
-  const std::uint32_t bits = Number(bytes);
-  float number;
-  std::memcpy(&number, &bits, 4);
-  return double(number);
+  return double(std::bit_cast<float>(Number(bytes)));
 }
 
 }  // namespace
