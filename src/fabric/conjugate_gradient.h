@@ -42,9 +42,8 @@ class ConjugateGradient {
   void SetUp(int rows);
 
   /// Solves H x = b from x = 0. `b` becomes the residual. `matrix` must be finished and `multigrid` filled from it, or
-  /// from one like it. Where
-  /// p'Hp <= 0 it stops, and takes p if that is in the first iteration (Nocedal, Wright 2006, "Numerical Optimization",
-  /// algorithm 7.1). b and x are of VectorLength(rows) Reals, b zero at pinned vertices.
+  /// from one like it. Where p'Hp <= 0 it stops, and takes p if that is in the first iteration (Nocedal, Wright 2006,
+  /// "Numerical Optimization", algorithm 7.1). b and x are of VectorLength(rows) Reals, b zero at pinned vertices.
   SolveResult Solve(const SystemMatrix& matrix, Multigrid& multigrid, Real* b, Real* x, const SolveSettings& settings,
                     const Executor& executor);
 

@@ -280,7 +280,6 @@ void FabricEngine::Move() {
   if (!TryMove(true)) SplitStep(0, 1, 1);
   counts_.intersections = contact_->tangled();
   counts_.squeezed = contact_->CountSqueezed(position_);
-  counts_.contactBytes = static_cast<std::int64_t>(contact_->MemoryBytes());
 }
 
 /// Ends the step, or the part of it, if not too much is stopped on its way, or no more may be split. Else false, and
@@ -399,6 +398,7 @@ void FabricEngine::Place(const Handle& handle) {
 }
 
 EngineCounts FabricEngine::TakeCounts() {
+  counts_.contactBytes = static_cast<std::int64_t>(contact_->MemoryBytes());
   return std::exchange(counts_, {});
 }
 
