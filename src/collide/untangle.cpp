@@ -49,22 +49,14 @@ struct Seam {
 }  // namespace
 
 Untangler::Untangler(const ContactMesh& mesh) : mesh_(mesh) {
-  first_.assign(Index(mesh.vertices()) + 1, 0);
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::int32_t v : CornersOf(t)) ++first_[Index(v) + 1];
-  }
-  for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
-  triangle_.resize(Index(first_.back()));
-  std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::int32_t v : CornersOf(mesh.triangles[t]))
-      triangle_[Index(next[Index(v)]++)] = static_cast<std::int32_t>(t);
-  }
+  triangles_ = ListBy(mesh.vertices(), 3 * mesh.triangles.size(),
+                      [&](std::size_t corner) { return CornersOf(mesh.triangles[corner / 3])[corner % 3]; });
+  for (std::int32_t& corner : triangles_.entry) corner /= 3;
 }
 
 std::span<const std::int32_t> Untangler::TrianglesOf(std::int32_t vertex) const {
-  return std::span(triangle_).subspan(Index(first_[Index(vertex)]),
-                                      Index(first_[Index(vertex) + 1] - first_[Index(vertex)]));
+  const std::size_t first = Index(triangles_.first[Index(vertex)]), end = Index(triangles_.first[Index(vertex) + 1]);
+  return std::span(triangles_.entry).subspan(first, end - first);
 }
 
 /// Calls f with each triangle that has the edge.

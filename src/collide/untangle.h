@@ -11,6 +11,7 @@
 #include "collide/intersections.h"
 #include "collide/proximity.h"
 #include "math/vector3.h"
+#include "mesh/lists.h"
 #include "percale/vec3.h"
 
 namespace percale {
@@ -86,7 +87,7 @@ class Untangler {
   void LeaveSolids(std::span<const Vec3> x, std::span<Meeting> meetings) const;
 
   const ContactMesh& mesh_;
-  std::vector<std::int32_t> first_, triangle_;  // per vertex the triangles that have it
+  Lists triangles_;  // per vertex those that have it
   std::vector<Intersection> met_;
   std::vector<Sheets> sheets_;       // of each of these
   std::vector<std::int32_t> other_;  // per sheet
