@@ -17,10 +17,12 @@
 namespace percale::bench {
 namespace {
 
-constexpr int kRounds = 5;
-constexpr int kPointsPerRound = 40000;  // times frames; keeps a default run below a minute
-constexpr int kHashSize = 50;           // points along a side in the table of hash functions
-constexpr int kHashFrame = 60;          // where the falling sheet lies in many layers
+constexpr int kRounds = 3;
+constexpr int kPointsPerRound = 600000;  // times frames; keeps a default run near a minute
+constexpr int kMostFrames = 80;          // the falling sheet lies folded by then
+constexpr int kHashRounds = 5;
+constexpr int kHashSize = 50;   // points along a side in the table of hash functions
+constexpr int kHashFrame = 60;  // where the falling sheet lies in many layers
 
 using Clock = std::chrono::steady_clock;
 using StageTimes = std::array<double, kStageCount>;
@@ -83,19 +85,16 @@ void RunFrames(World& world, int frames, StageTimes& stages) {
 }
 
 SpringsRun TimeScene(const Scene& scene, const std::string& name, int size, int threads, int frames) {
-  SpringsRun result{.scene = name, .size = size, .frames = kRounds * frames};
+  SpringsRun result{.scene = name, .size = size, .frames = frames};
   std::fprintf(stderr, "%s %d x %d\n", name.c_str(), size, size);
-  PlainTwin twin(scene);
-  World one(scene, {.threads = 1}), many(scene, {.threads = threads});
-  StageTimes warmUp{};
-  twin.Frame();
-  RunFrames(one, 1, warmUp);
-  RunFrames(many, 1, warmUp);
-
-  const double toNs = 1e9 / (static_cast<double>(twin.PointCount()) * scene.simulation.stepsPerFrame * frames);
+  const double toNs =
+      1e9 / (static_cast<double>(PlainTwin(scene).PointCount()) * scene.simulation.stepsPerFrame * frames);
   std::vector<double> twinTimes, oneTimes, manyTimes, ratiosOne, ratiosMany;
   std::vector<StageTimes> stagesOne, stagesMany;
+  result.equal = true;
   for (int round = 0; round < kRounds; ++round) {
+    PlainTwin twin(scene);
+    World one(scene, {.threads = 1}), many(scene, {.threads = threads});
     StageTimes timesOne{}, timesMany{};
     twinTimes.push_back(toNs * Seconds([&] {
                           for (int frame = 0; frame < frames; ++frame) twin.Frame();
@@ -106,6 +105,7 @@ SpringsRun TimeScene(const Scene& scene, const std::string& name, int size, int 
     ratiosMany.push_back(twinTimes.back() / manyTimes.back());
     stagesOne.push_back(timesOne);
     stagesMany.push_back(timesMany);
+    result.equal = result.equal && SameBits(twin, one) && SameBits(twin, many);
   }
   result.twin = Median(twinTimes);
   result.one = Median(oneTimes);
@@ -119,7 +119,6 @@ SpringsRun TimeScene(const Scene& scene, const std::string& name, int size, int 
     result.stagesOne[s] = Median(a);
     result.stagesMany[s] = Median(b);
   }
-  result.equal = SameBits(twin, one) && SameBits(twin, many);
   return result;
 }
 
@@ -142,7 +141,7 @@ std::vector<HashRun> CompareHashes(Scene scene) {
     rows[h].pairs = twin.CountPairs();
   }
   std::array<std::vector<double>, 4> times;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kHashRounds; ++round) {
     for (std::size_t h = 0; h < rows.size(); ++h) {
       times[h].push_back(1e3 / scene.simulation.stepsPerFrame * Seconds([&] { worlds[h].Step(); }));
     }
@@ -211,7 +210,8 @@ Result<SpringsBench> MeasureSprings(const SpringsBenchOptions& options) {
     for (const int size : options.sizes) {
       const Result<Scene> scene = FindScene(options, name, size);
       if (!scene) return scene.diagnostics();
-      const int frames = options.frames > 0 ? options.frames : std::clamp(kPointsPerRound * 3 / (size * size), 2, 16);
+      const int frames =
+          options.frames > 0 ? options.frames : std::clamp(kPointsPerRound / (size * size), 10, kMostFrames);
       bench.runs.push_back(TimeScene(*scene, name, size, bench.threads, frames));
     }
   }

@@ -553,7 +553,8 @@ void AddVerbs(CLI::App& app, Builder& builder) {
                  for (const std::string& part : Split(text, ','))
                    builder.options().sizes.push_back(Whole("--sizes", part, 3, 2000));
                });
-  builder.Call(bench, "--frames", "Frames per timed round; default: fewer for larger sheets", "N", "Options",
+  builder.Call(bench, "--frames", "Frames that are timed, from the start; default: fewer for larger sheets", "N",
+               "Options",
                [&builder](const std::string& text) { builder.options().frames = Whole("--frames", text, 1, 100000); });
   bench.add_flag("--json", builder.options().json, "One JSON object instead of tables")->group("Options");
   builder.Folder(bench, "benchmarks (fabric), none (springs, contact)");

@@ -82,8 +82,10 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
 
 /// Squares of distances between points, in float, with room for what that rounds [m^2].
 struct Reach {
-  float push;  ///< Points push each other that are as near,
-  float near;  ///< and may do so after others have moved.
+  float push;    ///< Points push each other that are as near.
+  float deep;    ///< A bucket without a pair as near is shallow: points move little there,
+  float slight;  ///< and only those that are as near may push each other after others have moved.
+  float far;     ///< The same for any bucket.
 };
 
 /// Which points of a bucket may come too close to which others while they move.
@@ -132,28 +134,31 @@ inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, i
   }
   int m = kFloatLanes;
   for (; m < count; m += kFloatLanes) gather(m);
-  std::uint64_t near[kMost], todo = 0, pushed = 0;
+  std::uint64_t slight[kMost], far[kMost], todo = 0, farTodo = 0, deep = 0;
   for (m = 0; m < count; ++m) {
-    std::uint64_t nearBits = 0, pushBits = 0;
+    std::uint64_t slightBits = 0, farBits = 0, deepBits = 0;
+    const auto compare = [&](const auto& squares, int shift) {
+      deepBits |= std::uint64_t{AtMost(squares, reach.deep)} << shift;
+      slightBits |= std::uint64_t{AtMost(squares, reach.slight)} << shift;
+      farBits |= std::uint64_t{AtMost(squares, reach.far)} << shift;
+    };
     int other = 0;
     for (; other + kFloatLanes < count; other += kWideLanes) {
       const WideFloats squares =
           SquaredLength(AllWide(x[0][m]) - LoadWide(x[0] + other), AllWide(x[1][m]) - LoadWide(x[1] + other),
                         AllWide(x[2][m]) - LoadWide(x[2] + other));
-      nearBits |= std::uint64_t{AtMost(squares, reach.near)} << other;
-      pushBits |= std::uint64_t{AtMost(squares, reach.push)} << other;
+      compare(squares, other);
     }
-    if (other < count) {
-      const FloatPack squares = SquaredDistance(alone(m), block(other));
-      nearBits |= std::uint64_t{AtMost(squares, reach.near)} << other;
-      pushBits |= std::uint64_t{AtMost(squares, reach.push)} << other;
-    }
+    if (other < count) compare(SquaredDistance(alone(m), block(other)), other);
     const std::uint64_t notItself = ~(std::uint64_t{1} << m);
-    near[m] = nearBits & notItself;
-    todo |= near[m];
-    pushed |= pushBits & notItself;
+    slight[m] = slightBits & notItself;
+    far[m] = farBits & notItself;
+    todo |= slight[m];
+    farTodo |= far[m];
+    deep |= deepBits & notItself;
   }
-  if (pushed == 0) return true;
+  const std::uint64_t* const near = deep != 0 ? far : slight;
+  if (deep != 0) todo = farTodo;
   int most = 0;
   for (; todo != 0; todo &= todo - 1, ++end) {
     m = LowestBit(todo);
@@ -290,17 +295,22 @@ inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
   return 0;
 }
 
-constexpr double kMostSpan = 1e9;  // m; far below the numbers that GatherFloats puts into empty lanes
+constexpr double kDeepShare = 0.85;  // of what points keep apart; tuned on selfCollision
+constexpr double kMostSpan = 1e9;    // m; far below the numbers that GatherFloats puts into empty lanes
 
 std::int64_t SeparateBuckets(const BucketArgs& a) {
-  // No point moves farther than a part in stepsPerFrame of the distance that it keeps: farther pairs
-  // than that stay apart. Coordinates in float are off by 2^-24 of the span: rather look twice.
+  // No point moves farther than a part in stepsPerFrame of the distance that it keeps: farther pairs than that
+  // stay apart. Where no two are nearer than a share of that distance, others come nearer by some way w at most,
+  // and none moves by more than (distance (1 - share) + w) / stepsPerFrame, which is w for the w below.
+  // Coordinates in float are off by 2^-24 of the span: rather look twice.
   const double farthest = a.greatestApart * (1 + 1 / a.stepsPerFrame);
+  const double slight = a.stepsPerFrame > 1 ? (1 - kDeepShare) / (a.stepsPerFrame - 1) : 1;
   const auto inFloat = [&](double distance) {
     const double widest = distance * (1 + 1e-5) + 1e-6 * a.greatestSpan;
     return static_cast<float>(widest * widest) + 1e-30f;  // whatever underflows
   };
-  const Reach reach = {inFloat(a.greatestApart), inFloat(farthest)};
+  const Reach reach = {inFloat(a.greatestApart), inFloat(kDeepShare * a.greatestApart),
+                       inFloat(a.greatestApart * (1 + slight)), inFloat(farthest)};
   const int mostNear = a.greatestSpan < kMostSpan ? NearPoints::kMost : 0;
   std::int64_t contacts = 0;
   PushLanes lanes;

@@ -102,25 +102,11 @@ struct StrainSweep {
     return later;
   }
 
-  /// The first point with a mark, from p on; `end` where there is none before it.
-  std::int64_t Next(std::int64_t p, std::int64_t end) const {
-    // Mostly it is the next, whose mark may be new: eight at once would have to wait for it.
-    if (p < end && a.marks[p] != 0) return p;
-    for (; p < end; p += 8) {
-      std::uint64_t eight;
-      memcpy(&eight, a.marks + p, sizeof eight);
-      if (eight == 0) continue;
-      p += LowestBit(eight) / 8;
-      break;
-    }
-    return p < end ? p : end;
-  }
-
-  /// The springs that a point creates and that are marked.
-  void Visit(std::int64_t p) {
+  /// The springs that a point creates and that are marked. Returns whether marks of other points were added.
+  bool Visit(std::int64_t p) {
     double px = a.x[0][p], py = a.x[1][p], pz = a.x[2][p];
     const bool fixedP = a.fixed[p] != 0;
-    bool moved = false;
+    bool moved = false, marked = false;
     // Kinds ascend; marks that come while the loop runs are of later ones.
     for (unsigned kinds = a.marks[p]; kinds != 0;) {
       const int kind = LowestBit(kinds);
@@ -128,11 +114,12 @@ struct StrainSweep {
       const std::int64_t q = p + step[kind];
       const double dx = a.x[0][q] - px, dy = a.x[1][q] - py, dz = a.x[2][q] - pz;
       const double squared = dx * dx + dy * dy + dz * dz;
-      const double limit = a.limit * a.rest[kind][p];
-      if (squared < limit * limit * (1 - 1e-12)) continue;  // surely short enough
-      const double length = Sqrt(squared);
+      const double limit = a.limit * a.rest[kind][p], limitSquared = limit * limit;
+      if (squared < limitSquared * (1 - 1e-12)) continue;  // surely short enough
       const bool fixedQ = a.fixed[q] != 0;
-      if (length <= limit || (fixedP && fixedQ)) continue;
+      if (fixedP && fixedQ) continue;
+      const double length = Sqrt(squared);
+      if (squared < limitSquared * (1 + 1e-12) && length <= limit) continue;  // else surely too long
       const double factor = (length - limit) / length;
       const double shareP = fixedP ? 0 : fixedQ ? 1 : 0.5, shareQ = fixedQ ? 0 : 1 - shareP;
       const double ex = dx * factor, ey = dy * factor, ez = dz * factor;
@@ -143,10 +130,15 @@ struct StrainSweep {
       if ((a.moved[p] += static_cast<float>(shareP * (length - limit))) > a.budget) {
         kinds |= a.kinds[p] & (~0u << (kind + 1));
         Mark(p, atCreator);
+        marked = true;
       }
-      if ((a.moved[q] += static_cast<float>(shareQ * (length - limit))) > a.budget) Mark(p, atOther[kind]);
+      if ((a.moved[q] += static_cast<float>(shareQ * (length - limit))) > a.budget) {
+        Mark(p, atOther[kind]);
+        marked = true;
+      }
     }
     if (moved) a.x[0][p] = px, a.x[1][p] = py, a.x[2][p] = pz;
+    return marked;
   }
 
   /// Marks springs that come after one that p creates. Where there is none, `kinds` has no bit.
@@ -162,7 +154,12 @@ struct StrainSweep {
 /// sweep visits the others.
 std::int64_t LimitStrain(const StrainArgs& a) {
   StrainSweep sweep(a);
-  for (std::int64_t p = sweep.Next(0, a.pointCount); p < a.pointCount; p = sweep.Next(p + 1, a.pointCount))
-    sweep.Visit(p);
+  for (std::int64_t begin = 0; begin < a.pointCount; begin += kMarkBlock) {
+    for (std::uint64_t todo = NonzeroBytes(a.marks + begin); todo != 0;) {
+      const int at = LowestBit(todo);
+      todo &= todo - 1;
+      if (sweep.Visit(begin + at)) todo = NonzeroBytes(a.marks + begin) & (~std::uint64_t{1} << at);
+    }
+  }
   return sweep.limited;
 }

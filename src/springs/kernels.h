@@ -68,9 +68,11 @@ struct ElasticEnergyArgs {
   double stiffness[6];  ///< Of each kind [N/m]; 0 for kinds that are not enabled.
 };
 
-/// Zeros that the strain limit needs behind the bits of the last point: springs created there do not exist.
+/// The strain limit looks for bits of this many points at once.
+inline constexpr int kMarkBlock = 64;
+/// Zeros that it needs behind the bits of the last point: springs created there do not exist.
 inline int MarkPadding(int numWidth) {
-  return 2 * numWidth + kGridPad;
+  return 2 * numWidth + kMarkBlock;
 }
 
 /// The strain limit's sweep over the springs of one cloth.

@@ -133,6 +133,15 @@ inline std::uint64_t BytePerLane(const Mask masks[6]) {
   for (int m = 0; m < 6 && any != 0; ++m) bytes |= std::uint64_t{bits[m] * 0x00204081 & 0x01010101} << m;
   return bytes;
 }
+inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
+  std::uint64_t zeros = 0;
+  for (int half = 0; half < 2; ++half) {
+    const __m256i bytes = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p) + half);
+    const int bits = _mm256_movemask_epi8(_mm256_cmpeq_epi8(bytes, _mm256_setzero_si256()));
+    zeros |= std::uint64_t{static_cast<std::uint32_t>(bits)} << 32 * half;
+  }
+  return ~zeros;
+}
 inline bool QuickSqrt(const Pack[6], Pack[6]) {
   return false;
 }

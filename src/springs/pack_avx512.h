@@ -136,6 +136,11 @@ inline std::uint64_t BytePerLane(const Mask masks[6]) {
   for (int m = 0; m < 6; ++m) bytes |= _pdep_u64(masks[m].v, kBytes << m);
   return bytes;
 }
+/// A bit for each of 64 bytes that is not zero.
+inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
+  const __m512i bytes = _mm512_loadu_si512(p);
+  return _mm512_test_epi8_mask(bytes, bytes);
+}
 /// Six roots side by side, each rounded correctly as by Sqrt. Half of them come without the divider, which
 /// else would take longer than all other work on a spring. Returns false, and no roots, where that is
 /// not to be had.

@@ -135,6 +135,11 @@ inline std::uint64_t BytePerLane(const Mask masks[6]) {
   for (int m = 0; m < 6; ++m) bytes |= std::uint64_t{Bits(masks[m]) * 0x00204081 & 0x01010101} << m;
   return bytes;
 }
+inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
+  std::uint64_t bits = 0;
+  for (int i = 0; i < 64; ++i) bits |= std::uint64_t{p[i] != 0} << i;
+  return bits;
+}
 inline bool QuickSqrt(const Pack[6], Pack[6]) {
   return false;
 }
