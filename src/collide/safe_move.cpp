@@ -31,7 +31,8 @@ constexpr PairKind kKinds[2] = {PairKind::VertexTriangle, PairKind::EdgeEdge};
 
 }  // namespace
 
-double FloorOf(double gap, double distance) {
+double FloorOf(double gap, double distance, double core) {
+  if (core > 0) return gap > core ? core + FloorOf(gap - core, distance) : 0.5 * gap;
   return std::min(0.999 * gap, std::max(std::min(0.2 * gap, 0.25 * distance), 0.05 * distance));
 }
 
@@ -57,7 +58,7 @@ std::size_t SafeMove::MemoryBytes() const {
 
 double SafeMove::DistanceOf(PairKind kind, const VertexQuad& quad, const ContactDistances& distances) const {
   const std::int32_t one = mesh_.body[Index(quad[0])], other = mesh_.body[Index(quad[3])];
-  const double distance = distances.half[Index(one)] + distances.half[Index(other)];
+  const double distance = distances.half[Index(one)] + distances.half[Index(other)] - distances.CoreOf(one, other);
   if (one != other) return distance;
   const Corners<double> place = Gather(mesh_.place, quad);
   // Most pairs lie far apart in the mesh, and that is seen at once.
@@ -104,7 +105,7 @@ void SafeMove::Search(const Ways& ways, std::span<const Vec3> gone, const Contac
 }
 
 /// Tests the pairs of vertices that changed, and shortens the ways of those that fail. Returns how many do.
-std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
+std::int64_t SafeMove::Cut(const Ways& ways, const ContactDistances& distances, int sweep) {
   ForPairs([&](std::size_t kind, std::size_t begin, std::size_t end) {
     const NearPairs& pairs = pairs_[kind];
     for (std::size_t p = begin; p < end; ++p) {
@@ -115,8 +116,9 @@ std::int64_t SafeMove::Cut(const Ways& ways, int sweep) {
       if (!(gap > 0) || pairs.exempt[p]) continue;
       Corners<double> way;
       for (std::size_t k = 0; k < 4; ++k) way[k] = From<double>(ways.way[Index(v[k])]) * ways.share[Index(v[k])];
+      const double core = distances.CoreOf(mesh_.body[Index(v[0])], mesh_.body[Index(v[3])]);
       shares_[kind][p] =
-          ShareApart(kKinds[kind], Gather(ways.start, v), way, pairs.start[p], FloorOf(gap, pairs.distance[p]));
+          ShareApart(kKinds[kind], Gather(ways.start, v), way, pairs.start[p], FloorOf(gap, pairs.distance[p], core));
     }
   });
   const auto fails = [](double share) { return share < 1; };
@@ -179,7 +181,7 @@ SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3>
   std::span<const Vec3> gone = way;
   Search(ways, gone, distances);
   ++report.detections;
-  for (int sweep = 0; Cut(ways, sweep) > 0; ++sweep) {
+  for (int sweep = 0; Cut(ways, distances, sweep) > 0; ++sweep) {
     // Whoever is cut may meet what was not listed.
     bool more = false;
     for (std::size_t v = 0; v < cut_.size(); ++v) {

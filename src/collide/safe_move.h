@@ -20,6 +20,13 @@ namespace percale {
 struct ContactDistances {
   std::vector<double> half;  ///< Per body: two are in contact when nearer than the sum of theirs [m].
   bool clothPairs = true;    ///< Whether cloth feels cloth.
+  std::vector<double>
+      core{};  ///< Per body: so much of its half is solid all around its vertices and edges [m]; or none.
+
+  /// What is solid between two bodies, of their distance [m].
+  double CoreOf(std::int32_t body, std::int32_t other) const {
+    return core.empty() ? 0 : core[static_cast<std::size_t>(body)] + core[static_cast<std::size_t>(other)];
+  }
 };
 
 /// What is near a way: two things each.
@@ -66,8 +73,8 @@ class SafeMove {
   /// Of all that it holds.
   std::size_t MemoryBytes() const;
 
-  /// Below which two vertices of a pair count as in contact: the sum of their bodies' halves, less where they are as
-  /// near in the mesh itself.
+  /// Below which the two of a pair count as in contact, beyond their cores: the sum of their bodies' halves, less where
+  /// they are as near in the mesh itself.
   double DistanceOf(PairKind kind, const VertexQuad& quad, const ContactDistances& distances) const;
 
  private:
@@ -81,7 +88,7 @@ class SafeMove {
   template <class Body>
   void ForPairs(Body&& body);
   bool LimitWays(const Ways& ways, const ContactDistances& distances);
-  std::int64_t Cut(const Ways& ways, int sweep);
+  std::int64_t Cut(const Ways& ways, const ContactDistances& distances, int sweep);
 
   const ContactMesh& mesh_;
   const Executor& executor_;
@@ -96,6 +103,6 @@ class SafeMove {
 
 /// How near a pair may come that starts at a distance `gap` and is in contact below `distance` [m]: so far that it can
 /// get there again and again and never meets, and not so far that fast cloth stops in the air.
-double FloorOf(double gap, double distance);
+double FloorOf(double gap, double distance, double core = 0);
 
 }  // namespace percale

@@ -11,12 +11,15 @@ namespace {
 
 /// The distance of contact where the scene states none, over the mean edge.
 constexpr double kDistance = 0.3;
+/// What is round is felt by triangles and edges as well as by vertices where it is smaller than so many mean edges:
+/// else it does not stand out between the vertices that it holds, even of cloth stretched fourfold.
+constexpr double kCoarse = 10;
 /// What was near is looked for along no longer a way, over the distance.
 constexpr double kLookBack = 10;
 /// So many are untangled at a time.
 constexpr int kMostTangled = 1 << 20;
-/// How near cloth may come to a solid, how near it feels it soon, and how deep in it counts at most, over the distance.
-constexpr double kLeastGap = 0.2, kSoon = 2, kDeepest = 0.5;
+/// How near cloth may come to a solid, and how near it feels it soon, over the distance.
+constexpr double kLeastGap = 0.2, kSoon = 2;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -96,6 +99,7 @@ void ContactStep::Configure(const Scene& scene) {
   obstacles_.Configure(scene);
   const std::vector<double> meanEdges = MeanEdges(mesh_);
   distances_.half.assign(Index(mesh_.bodies()), 0);
+  distances_.core.assign(Index(mesh_.bodies()), 0);
   if (distances_.clothPairs != scene.simulation.selfCollision) judged_ = false;
   distances_.clothPairs = scene.simulation.selfCollision;
   surfaces_.assign(Index(mesh_.bodies()), {});
@@ -107,11 +111,14 @@ void ContactStep::Configure(const Scene& scene) {
     most = std::max(most, distances_.half[c]);
   }
   distance_ = 2 * most;
+  const double longest = meanEdges.empty() ? 0 : *std::max_element(meanEdges.begin(), meanEdges.end());
   std::size_t body = meanEdges.size();
   for (const Obstacle& obstacle : obstacles_.all()) {
-    const ColliderSettings& collider = scene.colliders[Index(obstacle.collider)];
-    distances_.half[body] = most + collider.thickness;
-    surfaces_[body++] = {.friction = collider.friction, .rulesFriction = true};
+    const double core = obstacle.core < kCoarse * longest ? obstacle.core : 0;
+    const double thickness = obstacle.collider >= 0 ? scene.colliders[Index(obstacle.collider)].thickness : 0;
+    distances_.core[body] = core;
+    distances_.half[body] = most + thickness + core;
+    surfaces_[body++] = {.friction = FrictionOf(scene, obstacle), .rulesFriction = true, .core = core};
   }
   listed_ = false;
 }
@@ -177,6 +184,20 @@ void ContactStep::Begin(std::span<const Vec3> previous, std::span<const Vec3> st
   listed_ = true;
 }
 
+/// Which solids the surfaces are those of, where triangles and edges feel them.
+void ContactStep::FindRoundSurfaces() {
+  std::size_t body = Index(mesh_.clothBodies);
+  for (const Obstacle& obstacle : obstacles_.all()) {
+    ContactSurface& surface = surfaces_[body++];
+    surface.solid = nullptr;
+    if (surface.core == 0) continue;
+    const auto isIt = [&](const SolidStep& solid) { return solid.end.collider == obstacle.collider; };
+    // Spheres come first.
+    surface.solid =
+        obstacle.sphere >= 0 ? &solids_[Index(obstacle.sphere)] : &*std::find_if(solids_.begin(), solids_.end(), isIt);
+  }
+}
+
 void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> now, std::span<const Vec3> ahead,
                              std::span<const std::uint8_t> free, double h, bool firm) {
   const std::size_t cloth = now.size();
@@ -188,6 +209,7 @@ void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> 
     start_[cloth + v] = obstacle_[v];
     way_[cloth + v] = obstacleTarget_[v] - obstacle_[v];
   }
+  FindRoundSurfaces();
   contacts_.Begin({.begin = begin,
                    .start = start_,
                    .way = way_,

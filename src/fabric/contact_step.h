@@ -78,6 +78,7 @@ class ContactStep {
  private:
   void Judge(std::span<const Vec3> cloth);
   void Disentangle();
+  void FindRoundSurfaces();
   void JudgeLoneEdges(std::vector<Intersection>& met);
 
   const FabricModel& model_;

@@ -14,6 +14,9 @@ constexpr std::size_t kPairsAtOnce = 64 * kPairsPerChunk;
 constexpr double kPull = 4;
 /// Pairs that are not in contact, but nearer than so many times its distance, have a plane as well: they may be soon.
 constexpr double kSoon = 2;
+/// What is round meets triangles and edges where they come nearer to it than their own vertices, which feel it too: in
+/// full where that is nearer by this share of the distance of contact.
+constexpr double kFullSag = 0.25;
 /// How stiff a contact is that begins, over the inertia of its sides, mass over h^2: stiff enough for what lies on
 /// cloth, and not so stiff that vertices that touch move as one, which solvers take long to see.
 constexpr double kStiffness = 20;
@@ -38,6 +41,24 @@ double Softest(const Real* block) {
   const double a = block[0], b = block[4], c = block[8], d = block[1], e = block[2], f = block[5];
   const double xx = b * c - f * f, yy = a * c - e * e, zz = a * b - d * d;
   return (a * xx - d * (d * c - e * f) + e * (d * f - b * e)) / (xx + yy + zz);
+}
+
+/// How much nearer a side of a pair comes to the other, of a point or an edge, than the vertices of that side do, where
+/// the plane is [m]. `first`: the point or edge is the first side.
+double SagOf(PairKind kind, const Corners<double>& x, const PairState& plane, bool first) {
+  const bool edges = kind == PairKind::EdgeEdge;
+  const std::size_t begin = edges && first ? 2 : first ? 1 : 0, end = edges && !first ? 2 : 4;
+  const Vector3<double> from = edges ? x[first ? 0 : 2] : x[0];
+  const Vector3<double> along = edges ? x[first ? 1 : 3] - from : Vector3<double>();
+  const double squared = Dot(along, along);
+  double mean = 0;
+  for (std::size_t k = begin; k < end; ++k) {
+    const Vector3<double> way = x[k] - from;
+    const double at = squared > 0 ? std::clamp(Dot(way, along) / squared, 0.0, 1.0) : 0;
+    const Vector3<double> apart = way - along * at;
+    mean += std::abs(plane.weight[k]) * std::sqrt(Dot(apart, apart));
+  }
+  return mean - plane.gap;
 }
 
 /// How the spring of friction is strained, where `sum` is that of weights times positions.
@@ -199,21 +220,28 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first
       const PairState& now = states_[p];
       const double distance = pairs.distance[first + p];
       kept_[p] = 0;
+      const ContactSurface& a = step_.surfaces[Index(mesh_.body[Index(vertex[0])])];
+      const ContactSurface& b = step_.surfaces[Index(mesh_.body[Index(vertex[3])])];
       if (!(now.gap > 0) || pairs.exempt[first + p]) continue;
+      const double core = a.core + b.core, solid = std::min(core, now.gap + kDeepest * distance);
+      const double gap = now.gap - solid;
       Corners<double> x, way;
       for (std::size_t k = 0; k < 4; ++k) {
         x[k] = From<double>(step_.start[Index(vertex[k])]);
         way[k] = From<double>(step_.way[Index(vertex[k])]);
       }
       PairState plane = now;
-      const double share = ShareApart(kind, x, way, now, FloorOf(now.gap, distance));
+      Corners<double> at = x;  // where the plane is
+      const double share = ShareApart(kind, x, way, now, FloorOf(now.gap, distance, core));
       if (share < 1) {
-        plane = StateOf(kind, After(x, way, share));
-        if (!(plane.gap > 0)) plane = now;
-      } else if (now.gap >= kSoon * distance) {
+        at = After(x, way, share);
+        plane = StateOf(kind, at);
+        if (!(plane.gap > 0)) at = x, plane = now;
+      } else if (gap >= kSoon * distance) {
         continue;
       }
-      const double counts = ShareOf(kind, vertex, plane.weight);
+      double counts = ShareOf(kind, vertex, plane.weight);
+      if (core > 0) counts *= std::clamp(SagOf(kind, at, plane, a.core > 0) / (kFullSag * distance), 0.0, 1.0);
       if (counts == 0) continue;
       kept_[p] = 1;
       Contact& c = found_[p];
@@ -221,21 +249,31 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first
       c.key = {kind == PairKind::VertexTriangle ? ContactKey::Kind::VertexTriangle : ContactKey::Kind::EdgeEdge,
                vertex};
       c.normal = plane.normal;
-      Vector3<double> obstacle;
+      Vector3<double> obstacle, obstacleBefore;
+      double side = 0;  // of the obstacle: its weights' sum
       for (std::size_t k = 0; k < 4; ++k) {
         const std::int32_t v = vertex[k];
         c.weight[k] = plane.weight[k];
         c.vertex[k] = v < mesh_.clothVertices ? v : -1;
-        if (c.vertex[k] < 0) obstacle += (x[k] + way[k]) * plane.weight[k];
-        c.slideFrom += From<double>((c.vertex[k] < 0 ? step_.start : step_.begin)[Index(v)]) * plane.weight[k];
+        if (c.vertex[k] >= 0) {
+          c.slideFrom += From<double>(step_.begin[Index(v)]) * plane.weight[k];
+          continue;
+        }
+        obstacle += (x[k] + way[k]) * plane.weight[k];
+        obstacleBefore += x[k] * plane.weight[k];
+        side += plane.weight[k];
       }
-      c.offset = Dot(c.normal, obstacle);
-      c.slideFrom -= obstacle;
-      const ContactSurface& a = step_.surfaces[Index(mesh_.body[Index(vertex[0])])];
-      const ContactSurface& b = step_.surfaces[Index(mesh_.body[Index(vertex[3])])];
-      double ahead = 0;
+      c.offset = Dot(c.normal, obstacle) - solid;
+      if (core > 0) {
+        const SolidStep& round = *(a.core > 0 ? a : b).solid;
+        const Vec3 surface = ToVec3(obstacle * side - c.normal * (core * side));
+        obstacle = From<double>(surface) * side;
+        obstacleBefore = From<double>(ToWorld(round.start.pose, ToLocal(round.end.pose, surface))) * side;
+      }
+      c.slideFrom += obstacleBefore - obstacle;
+      double ahead = -solid;
       for (std::size_t k = 0; k < 4; ++k) ahead += c.weight[k] * Dot(c.normal, x[k] + way[k]);
-      Start(now.gap, distance, distance - ahead, counts, c);
+      Start(gap, distance, distance - ahead, counts, c);
       if (!(c.stiffness > 0)) kept_[p] = 0;
       c.friction = FrictionOf(a, b);
       Remember(c);

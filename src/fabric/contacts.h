@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "collide/safe_move.h"
+#include "collide/solid_path.h"
 #include "collide/untangle.h"
 #include "fabric/contact_memory.h"
 #include "fabric/system_matrix.h"
@@ -20,9 +21,14 @@ namespace percale::fabric {
 
 /// What the surface of a body is like.
 struct ContactSurface {
-  double friction = 0;         ///< Coulomb's coefficient.
-  bool rulesFriction = false;  ///< Whether its coefficient counts alone; else that of two is their mean.
+  double friction = 0;               ///< Coulomb's coefficient.
+  bool rulesFriction = false;        ///< Whether its coefficient counts alone; else that of two is their mean.
+  double core = 0;                   ///< So far all is solid around its vertices and edges [m].
+  const SolidStep* solid = nullptr;  ///< Where that is more than 0: of which they are the middle.
 };
+
+/// How deep in a solid counts at most, over the distance of contact: what is deeper comes out in some steps.
+inline constexpr double kDeepest = 0.5;
 
 /// One plane between two sides.
 struct Contact {

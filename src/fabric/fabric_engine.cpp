@@ -24,8 +24,10 @@ constexpr int kMostRounds = 4;
 /// Where a vertex is stopped farther than the distance of contact from where it was to go even then, the step is done
 /// over in so many parts, and each of them again, so many times at most.
 constexpr int kParts = 4, kMostSplits = 2;
-/// So it is where a triangle gets longer by this factor, over what it was or, if it was shorter, its rest length.
+/// So it is where a triangle gets longer by this factor, over what it was or, if it was shorter, its rest length; and
+/// then once more, since what is torn out in one go may jam for good.
 constexpr double kMostStretching = 1.5;
+constexpr int kMostStretchSplits = 3;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -277,14 +279,15 @@ void FabricEngine::Minimise(int iterations) {
 }
 
 void FabricEngine::Move() {
-  if (!TryMove(true)) SplitStep(0, 1, 1);
+  if (!TryMove(0)) SplitStep(0, 1, 1);
   counts_.intersections = contact_->tangled();
   counts_.squeezed = contact_->CountSqueezed(position_);
 }
 
-/// Ends the step, or the part of it, if not too much is stopped on its way, or no more may be split. Else false, and
-/// all is as it began.
-bool FabricEngine::TryMove(bool maySplit) {
+/// Ends the step, or a part of it that comes of so many splits, if not too much is stopped on its way, or it may not be
+/// split any more. Else false, and all is as it began.
+bool FabricEngine::TryMove(int depth) {
+  const bool maySplit = depth < kMostSplits;
   previous_ = next_;
   const std::vector<Vec3>& ahead = previous_;
   SafeMoveReport report = contact_->Move(position_, next_, maySplit);
@@ -302,7 +305,7 @@ bool FabricEngine::TryMove(bool maySplit) {
     Minimise(std::max(kMoreIterations, scene_.simulation.newtonIterations / 2));
     report = contact_->Move(position_, next_, maySplit && round + 1 < kMostRounds);
   }
-  if (maySplit && StretchesSuddenly()) return Rewind();
+  if (depth < kMostStretchSplits && StretchesSuddenly()) return Rewind();
   counts_.lostWay += report.lost;
   counts_.wantedWay += wanted;
   previous_ = begin_;
@@ -356,7 +359,7 @@ void FabricEngine::SplitStep(double from, double to, int depth) {
     Blow(time);
     Hold();
     Solve();
-    if (!TryMove(depth < kMostSplits)) SplitStep(begin, end, depth + 1);
+    if (!TryMove(depth)) SplitStep(begin, end, depth + 1);
   }
   setLength(h_ * kParts);
 }

@@ -83,7 +83,7 @@ class FabricEngine {
   void SetUp();
   void Predict();
   void Minimise(int iterations);
-  bool TryMove(bool maySplit);
+  bool TryMove(int depth);
   bool Rewind();
   bool StretchesSuddenly() const;
   double SquaredStretch(std::size_t triangle, std::span<const Vec3> y) const;

@@ -106,7 +106,7 @@ class Reader {
       const std::span<const Obstacle> all = obstacles_->all();
       const auto next = std::upper_bound(all.begin(), all.end(), number - firstVertex_.back(),
                                          [](std::int32_t v, const Obstacle& obstacle) { return v < obstacle.first; });
-      return scene_.colliders[Index(std::prev(next)->collider)].friction;
+      return percale::FrictionOf(scene_, *std::prev(next));
     }
     return 0.5 * sum;
   }

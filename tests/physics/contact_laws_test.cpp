@@ -131,9 +131,9 @@ Scene FoldScene() {
 constexpr int kFoldFrames = 40;
 constexpr int kShotFrames = test::Fewer(20, 10);
 
-/// A sheet that hangs by two corners, and a ball that flies through its middle at 30 m/s, or not; another sheet falls
-/// far away.
-Scene ShotScene(bool shot) {
+/// A sheet that hangs by two corners, and a ball that flies through its middle at 30 m/s, or not, so far to the side;
+/// another sheet falls far away.
+Scene ShotScene(bool shot, double aside) {
   Scene scene = FabricScene(60);
   const int cells = test::Fewer(20, 10);
   ClothSettings hanging = Sheet(0.4, 0.4, cells, cells);
@@ -143,7 +143,7 @@ Scene ShotScene(bool shot) {
   scene.cloths.push_back(Sheet(0.1, 0.1, 4, 4));
   scene.cloths[1].origin = {10, 0, 0};
   ColliderSettings ball;
-  ball.position = {0.206, 0.2, 0.5};
+  ball.position = {0.2 + aside, 0.2, 0.5};
   ball.radius = 0.06;
   scene.colliders.push_back(ball);
   scene.colliderMotions.push_back(
@@ -282,33 +282,37 @@ TEST_CASE("memory of contact grows with what is near, says so, and is kept") {
 }
 
 TEST_CASE("a step that is done over in parts ends as a step, and nothing else feels it") {
-  World shot(ShotScene(true), {.threads = 1}), calm(ShotScene(false), {.threads = 1});
-  ClothJudge judge(shot, 1);
-  int splits = 0;
-  double stretch = 0, off = 0;
-  for (int k = 0; k < kShotFrames; ++k) {
-    CAPTURE(k);
-    const StepReport& report = shot.Step();
-    REQUIRE(!report.divergence);
-    splits += report.splits;
-    stretch = std::max(stretch, report.greatestStretch);
-    CHECK(judge.Count(shot).count == 0);
-    CHECK(calm.Step().splits == 0);
-    // What falls freely has the velocity that its weight gave it.
-    for (const Vec3& velocity : shot.Cloth(1).velocities())
-      off = std::max(off, Length(velocity - Vec3{0, -9.8, 0} * report.time));
+  for (int start = 0; start < test::Fewer(4, 1); ++start) {
+    CAPTURE(start);
+    World shot(ShotScene(true, 0.006 * start), {.threads = 1}), calm(ShotScene(false, 0), {.threads = 1});
+    ClothJudge judge(shot, 1);
+    int splits = 0;
+    double stretch = 0, off = 0;
+    for (int k = 0; k < kShotFrames; ++k) {
+      CAPTURE(k);
+      const StepReport& report = shot.Step();
+      REQUIRE(!report.divergence);
+      splits += report.splits;
+      stretch = std::max(stretch, report.greatestStretch);
+      CHECK(judge.Count(shot).count == 0);
+      CHECK(calm.Step().splits == 0);
+      // What falls freely has the velocity that its weight gave it, 3.3 m/s at last, to within a hundredth.
+      for (const Vec3& velocity : shot.Cloth(1).velocities())
+        off = std::max(off, Length(velocity - Vec3{0, -9.8, 0} * report.time));
+    }
+    CHECK(splits > 0);
+    CHECK(off < 0.033);
+    // The ball carries it 1 m from its pins, and the ways to them are 0.28 m of cloth.
+    CHECK(stretch < 4);
+    if (!test::kSanitized) CHECK(shot.report().greatestStretch < 1.5);
   }
-  CHECK(splits > 0);
-  CHECK(off < 0.005);
-  CHECK(stretch < 12);
-  if (!test::kSanitized) CHECK(shot.report().greatestStretch < 1.5);
 }
 
 TEST_CASE("a step in parts comes out to the same bits for any number of threads, and from a checkpoint") {
   std::vector<std::uint64_t> hashes;
   WorldState middle;
   for (const int threads : {1, 3}) {
-    World world(ShotScene(true), {.threads = threads});
+    World world(ShotScene(true, 0.006), {.threads = threads});
     for (int k = 0; k < 9; ++k) {
       if (k == 5) world.Save(middle);
       world.Step();
@@ -316,7 +320,7 @@ TEST_CASE("a step in parts comes out to the same bits for any number of threads,
     hashes.push_back(world.StateHash());
   }
   CHECK(hashes[0] == hashes[1]);
-  World world(ShotScene(true), {.threads = 1});
+  World world(ShotScene(true, 0.006), {.threads = 1});
   world.Restore(middle);
   for (int k = 5; k < 9; ++k) world.Step();
   CHECK(world.StateHash() == hashes[0]);
