@@ -136,8 +136,7 @@ Plate PlateOf(const FabricModel& model, std::int32_t triangle) {
 /// Adds up the plates row by row: what touches a vertex are its own triangles, and those across an edge from it.
 void AssemblePlates(FabricModel& model) {
   model.plates = ScalarMatrix();
-  model.plates.first.reserve(Index(model.vertexCount) + 1);
-  model.plates.first.push_back(0);
+  RowSharer<double> plates(model.vertexCount);
   std::vector<std::int32_t> triangles;
   std::vector<std::pair<std::int32_t, double>> row;
   for (int v = 0; v < model.vertexCount; ++v) {
@@ -161,10 +160,10 @@ void AssemblePlates(FabricModel& model) {
         }
       }
     }
-    AppendRow(model.plates, row);
+    SumByColumn(row);
+    plates.Append(row);
   }
-  model.plates.column.shrink_to_fit();
-  model.plates.value.shrink_to_fit();
+  model.plates = plates.Take();
 }
 
 /// Makes the corners that agree on a vertex and its place in the material one point. `material`: per corner.

@@ -64,9 +64,11 @@ struct WindArgs {
 /// Some rows of the matrix of plates.
 struct PlateArgs {
   int begin, end;
+  // As SharedRows has them [N/m]:
+  const std::int32_t* kind;
   const std::int32_t* first;
-  const std::int32_t* column;
-  const double* value;          ///< In compressed rows [N/m].
+  const std::int32_t* offset;
+  const double* value;
   const std::uint8_t* isPlate;  ///< Per row: 0 where it does not count.
   const Vec3* x;                ///< Positions [m].
   Vec3* force;                  ///< Out, in rows that count: the row times the positions [N].
@@ -97,9 +99,10 @@ struct RowsArgs {
   const std::int32_t* storedFirst;
   const std::int32_t* mirror;  ///< As SystemMatrix has them.
   const Real* blocks;          ///< Nine per stored block, column by column; one more can be read at the end.
+  const std::int32_t* restKind;
   const std::int32_t* restFirst;
-  const std::int32_t* restColumn;
-  const Real* restValue;  ///< Scalars outside the pattern, in compressed rows.
+  const std::int32_t* restOffset;
+  const Real* restValue;  ///< Scalars outside the pattern, as SharedRows has them.
   const std::int32_t* extraBegin;
   const std::int32_t* extraEnd;
   const std::int32_t* extraColumn;

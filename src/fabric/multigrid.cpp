@@ -117,32 +117,31 @@ const Prolongation& Multigrid::prolongation(int level) const {
 namespace {
 
 /// P' S P, node by node. `rowFirst`, `row`, `rowWeight`: P' in compressed rows.
-ScalarMatrix CoarseScalars(const ScalarRows& fine, const Prolongation& p, const std::vector<std::int32_t>& rowFirst,
-                           const std::vector<std::int32_t>& rowOf, const std::vector<Real>& rowWeight) {
-  ScalarMatrix coarse;
-  coarse.first.push_back(0);
+ScalarMatrix CoarseScalars(const SharedRows<Real>& fine, const Prolongation& p,
+                           const std::vector<std::int32_t>& rowFirst, const std::vector<std::int32_t>& rowOf,
+                           const std::vector<Real>& rowWeight) {
+  RowSharer<double> coarse(p.nodes);
+  std::vector<std::pair<std::int32_t, double>> entries;  // of a row
   std::vector<double> sum(p.nodes, 0);
   std::vector<std::int32_t> seenBy(p.nodes, -1), columns;
   for (int node = 0; node < p.nodes; ++node) {
     columns.clear();
     for (std::int32_t e = rowFirst[node]; e < rowFirst[node + 1]; ++e) {
-      for (std::int32_t k = fine.first[rowOf[e]]; k < fine.first[rowOf[e] + 1]; ++k) {
-        const double value = static_cast<double>(rowWeight[e]) * static_cast<double>(fine.value[k]);
-        for (std::int32_t f = p.first[fine.column[k]]; f < p.first[fine.column[k] + 1]; ++f) {
+      fine.ForRow(rowOf[e], [&](std::int32_t other, Real entry) {
+        const double value = static_cast<double>(rowWeight[e]) * static_cast<double>(entry);
+        for (std::int32_t f = p.first[other]; f < p.first[other + 1]; ++f) {
           const std::int32_t column = p.column[f];
           if (std::exchange(seenBy[column], node) != node) columns.push_back(column), sum[column] = 0;
           sum[column] += value * static_cast<double>(p.weight[f]);
         }
-      }
+      });
     }
     std::sort(columns.begin(), columns.end());
-    for (const std::int32_t column : columns) {
-      coarse.column.push_back(column);
-      coarse.value.push_back(sum[column]);
-    }
-    coarse.first.push_back(static_cast<std::int32_t>(coarse.column.size()));
+    entries.clear();
+    for (const std::int32_t column : columns) entries.push_back({column, sum[column]});
+    coarse.Append(entries);
   }
-  return coarse;
+  return coarse.Take();
 }
 
 }  // namespace

@@ -214,8 +214,9 @@ double Objective::PlateEnergy(std::span<const Vec3> y) {
   return -0.25 * Sum(model_.vertexCount, [&](int begin, int end) {
     return kernels_.plateForces({.begin = begin,
                                  .end = end,
+                                 .kind = q.kind.data(),
                                  .first = q.first.data(),
-                                 .column = q.column.data(),
+                                 .offset = q.offset.data(),
                                  .value = q.value.data(),
                                  .isPlate = model_.plate.data(),
                                  .x = y.data(),

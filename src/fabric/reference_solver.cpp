@@ -158,17 +158,16 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     block(tether.vertex, tether.vertex, pull.hessian);
   }
 
-  const ScalarMatrix& q = model_.plates;
   for (int v = 0; v < model_.vertexCount; ++v) {
     if (!model_.plate[Index(v)]) continue;
     // Rows sum to zero: counted from v, only short ways cancel.
     Vector3<double> force;
-    for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
-      const Vector3<double> way = At(y, q.column[Index(k)]) - At(y, v);
-      force += way * q.value[Index(k)];
-      sum -= 0.25 * q.value[Index(k)] * Dot(way, way);
-      block(v, q.column[Index(k)], Diagonal(q.value[Index(k)]));
-    }
+    model_.plates.ForRow(v, [&](std::int32_t column, double value) {
+      const Vector3<double> way = At(y, column) - At(y, v);
+      force += way * value;
+      sum -= 0.25 * value * Dot(way, way);
+      block(v, column, Diagonal(value));
+    });
     addGradient(v, force);
   }
   if (energy) *energy = sum;

@@ -239,8 +239,9 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
     std::vector<Vec3> force(x.size(), {7, 7, 7});
     const double sum = kernels->plateForces({.begin = 3,
                                              .end = sheet.vertices(),
+                                             .kind = matrix.kind.data(),
                                              .first = matrix.first.data(),
-                                             .column = matrix.column.data(),
+                                             .offset = matrix.offset.data(),
                                              .value = matrix.value.data(),
                                              .isPlate = isPlate.data(),
                                              .x = x.data(),
@@ -252,11 +253,11 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
         continue;
       }
       Vec3 expected;
-      for (std::int32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
-        const Vec3 way = x[Index(matrix.column[Index(k)])] - x[v];
-        expected += way * matrix.value[Index(k)];
-        expectedSum += matrix.value[Index(k)] * Dot(way, way);
-      }
+      matrix.ForRow(static_cast<std::int32_t>(v), [&](std::int32_t column, double value) {
+        const Vec3 way = x[Index(column)] - x[v];
+        expected += way * value;
+        expectedSum += value * Dot(way, way);
+      });
       CHECK(Length(force[v] - expected) <= 1e-12 * (1 + Length(expected)));
     }
     CHECK(sum == doctest::Approx(expectedSum));

@@ -145,11 +145,11 @@ inline fabric::ScalarMatrix ConstantPart(const Sheet& sheet, const Cloth& cloth)
   std::vector<fabric::ScalarEntry> entries;
   for (int v = 0; v < sheet.vertices(); ++v) {
     entries.push_back({v, v, cloth.density * areas[v] / (cloth.timeStep * cloth.timeStep)});
-    for (int k = L.first[v]; k < L.first[v + 1]; ++k) {
-      for (int l = L.first[v]; l < L.first[v + 1]; ++l) {
-        entries.push_back({L.column[k], L.column[l], cloth.bending * L.value[k] * L.value[l] / areas[v]});
-      }
-    }
+    L.ForRow(v, [&](std::int32_t row, double a) {
+      L.ForRow(v, [&](std::int32_t column, double b) {
+        entries.push_back({row, column, cloth.bending * a * b / areas[v]});
+      });
+    });
   }
   return fabric::MakeScalarMatrix(sheet.vertices(), entries);
 }
