@@ -42,6 +42,7 @@ FabricEngine::FabricEngine(const Scene& scene, FabricModel model, const Executor
       scene_(scene),
       model_(std::move(model)),
       solver_(model_, executor),
+      window_(model_),
       contact_(std::make_unique<ContactStep>(scene, model_, executor)) {
   solver_.objective().SetContacts(&contact_->contacts());
   const std::size_t count = Index(model_.vertexCount);
@@ -164,26 +165,28 @@ void FabricEngine::Blow(double time) {
   }
   const double density = wind.airDensity > 0 || !gusty ? wind.airDensity : WindSettings().airDensity;
   if (density == 0) return;
-  windLoads_.resize(model_.triangles.size());  // before the first wind there are none
+  windLoads_.resize(std::min(model_.triangles.size(), Index(window_.live())));  // before the first wind there are none
   const Air<double> properties{density, wind.dragCoefficient, kSkinDrag, wind.liftCoefficient};
-  const int triangles = static_cast<int>(model_.triangles.size());
-  executor_.ForChunks(Chunks(triangles), [&](int chunk) {
-    BestKernels().windLoads({.begin = chunk * kRowsPerChunk,
-                             .end = std::min((chunk + 1) * kRowsPerChunk, triangles),
+  const auto evaluate = [&](int begin, int end) {
+    BestKernels().windLoads({.begin = begin,
+                             .end = end,
                              .triangles = model_.triangles.data(),
                              .x = position_.data(),
                              .previous = previous_.data(),
                              .h = h_,
                              .air = properties,
                              .wind = air,
-                             .load = windLoads_.data()});
-  });
+                             .outFirst = begin,
+                             .load = windLoads_.data() + window_.Place(begin)});
+  };
   const std::span<VertexLoad> loads = Loads();
-  ForRange(executor_, position_.size(), [&](int v) {
-    for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
-      const VertexLoad& load = windLoads_[Index(model_.corners.entry[Index(e)] / 3)];
-      loads[Index(v)].stiffness += load.stiffness;
-      loads[Index(v)].force += load.force;
+  window_.ForRows(executor_, evaluate, [&](int begin, int end, const LiveTriangles& live) {
+    for (int v = begin; v < end; ++v) {
+      for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
+        const VertexLoad& load = windLoads_[Index(live.Place(model_.corners.entry[Index(e)]) / 3)];
+        loads[Index(v)].stiffness += load.stiffness;
+        loads[Index(v)].force += load.force;
+      }
     }
   });
 }
@@ -220,7 +223,8 @@ void FabricEngine::Hold() {
       const double share = GripShare(handle, model_.start[Index(v)] - model_.start[Index(centre)]);
       if (share == 0 || !free_[Index(v)]) continue;
       const double stiffness = model_.mass[Index(v)] * share * w * w;
-      loads[Index(v)].stiffness += Diagonal(stiffness + 2 * model_.mass[Index(v)] * share * w / h_);
+      const double diagonal = stiffness + 2 * model_.mass[Index(v)] * share * w / h_;
+      loads[Index(v)].stiffness += {.xx = diagonal, .yy = diagonal, .zz = diagonal};
       loads[Index(v)].force += way * stiffness;
     }
   }

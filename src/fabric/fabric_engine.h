@@ -14,6 +14,7 @@
 #include "fabric/energy/air.h"
 #include "fabric/fabric_model.h"
 #include "fabric/newton.h"
+#include "fabric/triangle_window.h"
 #include "mesh/engine_types.h"
 #include "mesh/pins.h"
 #include "percale/interaction.h"
@@ -101,6 +102,7 @@ class FabricEngine {
   Scene scene_;
   FabricModel model_;
   NewtonSolver solver_;
+  TriangleWindow window_;
   std::unique_ptr<ContactStep> contact_;
   double h_ = 0;     // of a step [s]
   double time_ = 0;  // of the last step [s]
@@ -115,7 +117,7 @@ class FabricEngine {
   std::vector<Handle> handles_;
   std::vector<Vec3> given_;            // More forces [N]; none, or one per vertex.
   std::vector<VertexLoad> loads_;      // none in a step in which nothing loads
-  std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
+  std::vector<VertexLoad> windLoads_;  // of each corner of the triangles in the window; none without wind
   std::vector<std::int32_t> touched_;  // of CollideBall
   std::vector<Fold> folds_;            // per hinge; none where none may set
   EngineCounts counts_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fabric/real4.h"
+#include "fabric/slots.h"
 #include "fabric/window.h"
 
 namespace percale::fabric {
@@ -18,36 +19,6 @@ constexpr int kRestrictChunk = 128;  // nodes that one chunk restricts to
 constexpr int kExtraParts = 16;      // each marks all nodes of a level, so there is a fixed number of them
 constexpr int kMostDirect = 200;     // nodes up to which the coarsest level is factored: 6 ms
 constexpr int kCoarsestSweeps = 4;   // of Jacobi where it is larger
-
-/// Numbers below 2^16, in one byte each where all are below 2^8, as those of meshes are that are no fans.
-class Slots {
- public:
-  void push_back(std::ptrdiff_t slot) {
-    assert(slot >= 0 && slot <= 0xffff);
-    if (wide_.empty() && slot <= 0xff) return narrow_.push_back(static_cast<std::uint8_t>(slot));
-    wide_.insert(wide_.end(), narrow_.begin(), narrow_.end());
-    narrow_.clear();
-    wide_.push_back(static_cast<std::uint16_t>(slot));
-  }
-  void shrink_to_fit() {
-    narrow_.shrink_to_fit();
-    wide_.shrink_to_fit();
-  }
-  std::int32_t size() const { return static_cast<std::int32_t>(narrow_.size() + wide_.size()); }
-  std::size_t Bytes() const { return narrow_.capacity() + 2 * wide_.capacity(); }
-  /// Calls visit(array), of either type.
-  template <class Visit>
-  void InArray(Visit&& visit) const {
-    if (wide_.empty())
-      visit(narrow_.data());
-    else
-      visit(wide_.data());
-  }
-
- private:
-  std::vector<std::uint8_t> narrow_;
-  std::vector<std::uint16_t> wide_;
-};
 
 template <class T, class Allocator>
 std::size_t Bytes(const std::vector<T, Allocator>& array) {

@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "core/executor.h"
+#include "fabric/block_parts.h"
 #include "fabric/contacts.h"
 #include "fabric/energy/point_energy.h"
 #include "fabric/fabric_model.h"
 #include "fabric/kernels.h"
 #include "fabric/system_matrix.h"
-#include "fabric/window.h"
+#include "fabric/triangle_window.h"
 #include "percale/vec3.h"
 
 namespace percale::fabric {
@@ -31,7 +32,7 @@ struct StepSettings {
 
 class Objective {
  public:
-  /// Both must outlive it. `pattern`: of the matrix to be filled, with the blocks of all triangles.
+  /// Both must outlive it. `pattern`: of the matrix to be filled, MakePattern of the model's triangles.
   Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor,
             const Kernels& kernels = BestKernels());
 
@@ -70,18 +71,13 @@ class Objective {
   BendingMoments<double> Bend(int triangle) const;
   PointEnergy<double> Pull(const FabricTether& tether, std::span<const Vec3> y) const;
   double PlateEnergy(std::span<const Vec3> y);
-  void FindWindow();
-  void FindParts();
   MembraneArgs Arguments(std::span<const Vec3> y, const Batch& batch);
-  void EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int block);
+  void EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int begin, int end);
   void AddPressure(std::span<const Vec3> y, const MembraneArgs& to, double pressure);
   void EvaluateHinges(std::span<const Vec3> y, bool withGradient);
   void SumMoments(std::span<const Vec3> y);
   void AddTethers(std::span<const Vec3> y, std::span<Vec3> gradient) const;
-  void Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int begin, int end);
-  template <class Rows>
-  void ForRows(std::span<const Vec3> y, bool withTangent, Rows&& rows);
-  std::int32_t Place(std::int64_t triangle) const;
+  void Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int begin, int end, const LiveTriangles& live);
   template <class Body>
   double Sum(int count, Body&& body);
 
@@ -92,12 +88,12 @@ class Objective {
   StepSettings step_;
   std::span<const Fold> folds_;
   Contacts* contacts_ = nullptr;
-  Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
+  Slots parts_;
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:
   std::vector<double> startStrain_[3];
   // The same of those that are needed at once:
-  Window window_;  // of kRowsPerChunk triangles each, for kRowsPerSlab rows of the matrix each
+  TriangleWindow window_;
   std::vector<Vec3> triangleGradient_;
   RealVector triangleHessian_;
   // Per hinge, where any cloth bends by them:

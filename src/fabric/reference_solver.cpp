@@ -75,7 +75,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     const Vector3<double> pulled = load.stiffness * way, force = From<double>(load.force);
     sum += 0.5 * inertia * Dot(off, off) + 0.5 * Dot(way, pulled) - Dot(force, way);
     addGradient(v, off * inertia + pulled - force);
-    block(v, v, Diagonal(inertia) + load.stiffness);
+    block(v, v, Diagonal(inertia) + load.stiffness.Full());
   }
 
   for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
