@@ -79,6 +79,7 @@ class ContactStep {
   void Judge(std::span<const Vec3> cloth);
   void Disentangle();
   void JudgeLoneEdges(std::vector<Intersection>& met);
+  bool NothingIsNear();
 
   const FabricModel& model_;
   const Executor& executor_;
