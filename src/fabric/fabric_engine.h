@@ -82,7 +82,9 @@ class FabricEngine {
 
  private:
   void SetUp();
-  void Predict();
+  Vec3 Fall() const { return scene_.simulation.gravity * (h_ * h_); }
+  Vec3 Predicted(std::size_t vertex) const;
+  void BeginLoads();
   void Minimise(int iterations);
   bool TryMove(bool maySplit);
   bool Rewind();
@@ -109,7 +111,8 @@ class FabricEngine {
   Pins pins_;
   std::vector<std::uint8_t> free_;  // per vertex
   std::vector<Vec3> position_, previous_;
-  std::vector<Vec3> predicted_, next_;
+  std::vector<Vec3> next_;
+  bool inBounds_ = true;               // where ApplyForces led
   std::vector<Vec3> begin_, before_;   // Where the step, or the part of it, begins, and where all was one before.
   std::vector<Vec3> pinFrom_, pinTo_;  // per pin: where it is as the whole step begins, and as the part ends
   // What acts in the step:

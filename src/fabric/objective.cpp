@@ -88,7 +88,7 @@ double Objective::Energy(std::span<const Vec3> y) {
     double sum = 0;
     for (int v = begin; v < end; ++v) {
       if (!step_.free[Index(v)]) continue;
-      const Vec3 off = y[Index(v)] - step_.predicted[Index(v)];
+      const Vec3 off = y[Index(v)] - step_.Predicted(Index(v));
       double cost = 0.5 * model_.mass[Index(v)] * perStep * Dot(off, off);
       if (!step_.loads.empty()) {
         const VertexLoad& load = step_.loads[Index(v)];
@@ -318,7 +318,7 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int be
       gradient[Index(v)] = {};
       continue;
     }
-    const Vec3 off = y[Index(v)] - step_.predicted[Index(v)];
+    const Vec3 off = y[Index(v)] - step_.Predicted(Index(v));
     Vec3 sum = off * (model_.mass[Index(v)] * perStep);
     if (!step_.loads.empty()) {
       const VertexLoad& load = step_.loads[Index(v)];

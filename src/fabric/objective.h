@@ -5,6 +5,7 @@
 ///
 ///     E(y) = |y - x~|²_M / 2h² + membrane + bending + pressure + loads,   x~ = x + h v + h² g
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,9 +26,13 @@ namespace percale::fabric {
 struct StepSettings {
   double h = 0;                        ///< Length [s].
   std::span<const Vec3> start;         ///< x, where the step begins [m].
-  std::span<const Vec3> predicted;     ///< x~, where inertia and gravity alone would lead [m].
+  std::span<const Vec3> before;        ///< x - h v, where all was a step before [m].
+  Vec3 fall;                           ///< h² g [m].
   std::span<const VertexLoad> loads;   ///< Per vertex; or nothing: none.
   std::span<const std::uint8_t> free;  ///< Per vertex: 0 for pins, whose gradient is zero.
+
+  /// x~, where inertia and gravity alone would lead [m].
+  Vec3 Predicted(std::size_t v) const { return start[v] + (start[v] - before[v]) + fall; }
 };
 
 class Objective {

@@ -69,7 +69,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
 
   for (int v = 0; v < model_.vertexCount; ++v) {
     if (!step_.free[Index(v)]) continue;
-    const Vector3<double> off = At(y, v) - At(step_.predicted, v), way = At(y, v) - At(step_.start, v);
+    const Vector3<double> off = At(y, v) - From<double>(step_.Predicted(Index(v))), way = At(y, v) - At(step_.start, v);
     const VertexLoad load = step_.loads.empty() ? VertexLoad{} : step_.loads[Index(v)];
     const double inertia = model_.mass[Index(v)] * perStep * perStep;
     const Vector3<double> pulled = load.stiffness * way, force = From<double>(load.force);
