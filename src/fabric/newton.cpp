@@ -32,7 +32,7 @@ NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
       executor_(executor),
       matrix_(MakePattern(model.vertexCount, model.triangles)),
       objective_(model, matrix_.pattern(), executor) {
-  gradient_.resize(Index(model.vertexCount));
+  gradient_ = objective_.scratch();
   trial_.resize(Index(model.vertexCount));
   right_.assign(VectorLength(model.vertexCount), 0);
   direction_.assign(VectorLength(model.vertexCount), 0);

@@ -209,7 +209,7 @@ void Objective::EvaluateHinges(std::span<const Vec3> y, bool withGradient) {
 
 /// What bending a triangle costs, and the moments on its hinges.
 BendingMoments<double> Objective::Bend(int t) const {
-  const double time = model_.bendDamping[Index(model_.clothOf[Index(t)])];
+  const double time = model_.bendDamping[model_.ClothOf(t)];
   EdgeAngles<double> angle, rest;
   BendingDamping<double> damping;
   damping.rate = step_.h > 0 ? time / step_.h : 0;
@@ -226,7 +226,7 @@ BendingMoments<double> Objective::Bend(int t) const {
 /// Of some triangles, whatever cloths they are of.
 void Objective::EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int begin, int end) {
   while (begin < end) {
-    const std::int32_t cloth = model_.clothOf[Index(begin)];
+    const auto cloth = static_cast<std::int32_t>(model_.ClothOf(begin));
     const Batch batch{cloth, begin, std::min(end, model_.firstTriangle[Index(cloth) + 1])};
     const MembraneArgs arguments = Arguments(y, batch);
     (withTangent ? kernels_.membraneTangent : kernels_.membraneGradient)(arguments);
@@ -328,8 +328,9 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int be
     for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
       sum += triangleGradient_[Index(live.Place(model_.corners.entry[Index(e)]))];
     }
-    sum += plateForce_[Index(v)];
-    if (!model_.plate[Index(v)]) {
+    if (model_.plate[Index(v)]) {
+      sum += plateForce_[Index(v)];
+    } else {
       for (std::int32_t e = model_.hingeEnds.first[Index(v)]; e < model_.hingeEnds.first[Index(v) + 1]; ++e) {
         const std::int32_t place = model_.hingeEnds.entry[Index(e)];
         sum += ToVec3(hinge_[Index(place / 4)].gradient[place % 4] * moment_[Index(place / 4)]);

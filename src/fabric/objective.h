@@ -62,6 +62,9 @@ class Objective {
   /// changes with that [J].
   double GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix);
 
+  /// Memory for a gradient that is used no longer than until the next call of Energy.
+  std::span<Vec3> scratch() { return plateForce_; }
+
   /// Of membrane and bending alone [J].
   double ElasticEnergy(std::span<const Vec3> y);
 
@@ -104,7 +107,7 @@ class Objective {
   // Per hinge, where any cloth bends by them:
   std::vector<double> startAngle_, angle_, moment_;
   std::vector<Hinge<double>> hinge_;
-  std::vector<Vec3> plateForce_;  // per vertex, where PlateEnergy was called last; zero where hinges bend [N]
+  std::vector<Vec3> plateForce_;  // per vertex of a plate, where PlateEnergy was called last [N]
   std::vector<double> chunkSums_;
 };
 

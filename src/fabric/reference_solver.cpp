@@ -81,7 +81,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
   for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
     const Triangle& tri = model_.triangles[t];
     const std::int32_t corners[3] = {tri.a, tri.b, tri.c};
-    const std::size_t cloth = Index(model_.clothOf[t]);
+    const std::size_t cloth = model_.ClothOf(static_cast<std::int64_t>(t));
     // All of a membrane's terms are in proportion to its area, so that of a patch counts as so much more of it.
     RestTriangle<double> rest = model_.Rest(t);
     rest.area *= model_.Strength(t);
