@@ -85,18 +85,6 @@ BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std:
   return pattern;
 }
 
-std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
-                                                        std::span<const Triangle> triangles) {
-  std::vector<std::array<std::int32_t, 9>> blocks;
-  blocks.reserve(triangles.size());
-  for (const Triangle& t : triangles) {
-    const std::int32_t corners[3] = {t.a, t.b, t.c};
-    std::array<std::int32_t, 9>& of = blocks.emplace_back();
-    for (int k = 0; k < 9; ++k) of[k] = pattern.Find(corners[k / 3], corners[k % 3]);
-  }
-  return blocks;
-}
-
 void SumByColumn(std::vector<std::pair<std::int32_t, double>>& row) {
   std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   auto end = row.begin();

@@ -43,10 +43,6 @@ struct BlockPattern {
 /// Couples the corners of each triangle, and the ends of each of `morePairs`, over `vertices` of them.
 BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std::span<const Edge> morePairs = {});
 
-/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
-std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
-                                                        std::span<const Triangle> triangles);
-
 using ScalarMatrix = SharedRows<double>;
 /// Sorts a row of (column, value) by column; entries of one column add up in the order in which they are given.
 void SumByColumn(std::vector<std::pair<std::int32_t, double>>& row);

@@ -272,7 +272,7 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
 TEST_CASE("the matrix is the sum of the triangles' blocks") {
   const test::Sheet sheet = test::Disc(4);
   const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);
-  const auto blocksOf = TriangleBlocks(pattern, sheet.triangles);
+  const auto blocksOf = test::TriangleBlocks(pattern, sheet.triangles);
   const std::size_t blocks = Index(pattern.blocks()), parts = 3 * sheet.triangles.size();
   const Lists corners = ListBy(sheet.vertices(), parts, [&](std::size_t e) {
     const Triangle& t = sheet.triangles[e / 3];

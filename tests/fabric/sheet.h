@@ -128,6 +128,18 @@ inline std::vector<double> VertexAreas(const Sheet& sheet) {
   return areas;
 }
 
+/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
+inline std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const fabric::BlockPattern& pattern,
+                                                               std::span<const Triangle> triangles) {
+  std::vector<std::array<std::int32_t, 9>> blocks;
+  for (const Triangle& t : triangles) {
+    const std::int32_t corners[3] = {t.a, t.b, t.c};
+    std::array<std::int32_t, 9>& of = blocks.emplace_back();
+    for (std::size_t k = 0; k < 9; ++k) of[k] = pattern.Find(corners[k / 3], corners[k % 3]);
+  }
+  return blocks;
+}
+
 /// Masses over h^2, and bending as the square of the Laplacian.
 inline fabric::ScalarMatrix ConstantPart(const Sheet& sheet, const Cloth& cloth) {
   const std::vector<double> areas = VertexAreas(sheet);
