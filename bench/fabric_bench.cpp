@@ -103,14 +103,11 @@ FabricRun MeasureXpbd(const FabricModel& model, std::span<const std::uint8_t> fr
 
 FabricRun MeasureDirect(const FabricModel& model, std::span<const std::uint8_t> free, int newton, int frames) {
   fabric::ReferenceSolver solver(model);
-  std::vector<Vec3> position = model.start, previous = position, predicted = position, y = position;
+  std::vector<Vec3> position = model.start, previous = position, y = position;
   const std::vector<fabric::VertexLoad> loads(position.size());
   const auto frame = [&] {
-    for (std::size_t v = 0; v < position.size(); ++v) {
-      y[v] = free[v] ? position[v] * 2 - previous[v] : position[v];
-      predicted[v] = free[v] ? y[v] + kGravity * (kFrame * kFrame) : y[v];
-    }
-    solver.Begin({kFrame, position, predicted, loads, free});
+    for (std::size_t v = 0; v < position.size(); ++v) y[v] = free[v] ? position[v] * 2 - previous[v] : position[v];
+    solver.Begin({kFrame, position, previous, kGravity * (kFrame * kFrame), loads, free});
     solver.Solve(y, {.maxIterations = newton, .tolerance = 1e-9});
     std::swap(previous, position);
     position = y;

@@ -27,7 +27,7 @@ XpbdCloth::XpbdCloth(const fabric::FabricModel& model, std::span<const std::uint
     : model_(model), position_(model.start), previous_(model.start), velocity_(model.start.size()) {
   for (std::size_t v = 0; v < free.size(); ++v) inverseMass_.push_back(free[v] ? 1 / model.mass[v] : 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    const auto& law = model.membranes[static_cast<std::size_t>(model.clothOf[t])].orthotropic;
+    const auto& law = model.membranes[model.ClothOf(static_cast<std::int64_t>(t))].orthotropic;
     Matrix3<double> stiffness{{law.c11, law.c12, 0, law.c12, law.c22, 0, 0, 0, law.c33}};
     rest_.push_back(model.Rest(t));
     compliance_.push_back(Inverse(stiffness * rest_[t].area));

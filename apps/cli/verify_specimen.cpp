@@ -179,13 +179,13 @@ StaticSheet::StaticSheet(const ClothSettings& cloth)
 bool StaticSheet::Solve(const Vec3& gravity) {
   for (std::size_t v = 0; v < loads_.size(); ++v) loads_[v].force = gravity * model_.mass[v];
   const std::vector<Vec3> start = positions_;
-  solver_.Begin({.h = 0, .start = start, .predicted = start, .loads = loads_, .free = free_});
+  solver_.Begin({.h = 0, .start = start, .before = start, .fall = {}, .loads = loads_, .free = free_});
   return solver_.Solve(positions_).converged;
 }
 
 bool StaticSheet::IsStable() {
   const std::vector<Vec3> start = positions_;
-  solver_.Begin({.h = 0, .start = start, .predicted = start, .loads = loads_, .free = free_});
+  solver_.Begin({.h = 0, .start = start, .before = start, .fall = {}, .loads = loads_, .free = free_});
   return solver_.IsStable(positions_);
 }
 

@@ -82,6 +82,8 @@ struct StepReport {
   std::optional<Divergence> divergence;  ///< Set: the state is the last good frame, stepping is over.
 };
 
+class ClothSprings;
+
 /// One cloth of a World. The spans stay valid until the World is changed or destroyed; their
 /// contents change with each Step.
 class ClothView {
@@ -91,11 +93,9 @@ class ClothView {
   std::span<const Vec3> rest() const { return rest_; }                ///< Where it started [m].
   std::span<const Vec2> uv() const { return uv_; }                    ///< 0..1, one per vertex.
   std::span<const Triangle> triangles() const { return triangles_; }  ///< Vertex indices.
-  std::span<const Edge> springs() const {
-    return springs_;
-  }                                                                 ///< Of the enabled kinds, in creation order;
-                                                                    ///< Engine::Fabric: edges of triangles.
-  std::span<const double> restLengths() const { return lengths_; }  ///< Of the springs [m].
+  /// Of the enabled kinds, in creation order; Engine::Fabric: edges of triangles. Made when first asked for.
+  std::span<const Edge> springs() const;
+  std::span<const double> restLengths() const;                      ///< Of the springs [m].
   std::span<const std::int32_t> pinned() const { return pinned_; }  ///< Vertex indices, ascending.
 
  private:
@@ -103,8 +103,7 @@ class ClothView {
   std::span<const Vec3> positions_, velocities_, rest_;
   std::span<const Vec2> uv_;
   std::span<const Triangle> triangles_;
-  std::span<const Edge> springs_;
-  std::span<const double> lengths_;
+  const ClothSprings* springs_ = nullptr;
   std::span<const std::int32_t> pinned_;
 };
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "percale/vec3.h"
@@ -140,6 +142,7 @@ class Builder {
   void FindNeighbours();
   void FindLeafNeighbours();
   void ShapeLeaf(std::int32_t leaf);
+  void AddInverses(const std::vector<std::array<float, 4>>& ofLeaf);
   void AddRegion(std::int32_t a, std::int32_t b);
   void AddAround(std::int32_t leaf);
 
@@ -152,8 +155,15 @@ class Builder {
   std::vector<double> altitude_;  // per leaf, the least
   std::vector<Polygon> hulls_;    // per leaf, of its places so seen
   std::vector<double> area_;      // per triangle, likewise
+  struct ByBytes {
+    bool operator()(const std::vector<std::array<float, 4>>& a, const std::vector<std::array<float, 4>>& b) const {
+      return a.size() != b.size() ? a.size() < b.size() : std::memcmp(&a[0], &b[0], a.size() * sizeof a[0]) < 0;
+    }
+  };
+  std::map<std::vector<std::array<float, 4>>, std::int32_t, ByBytes> inverseFirst_;  // of leaves so far
   FlatRegions regions_;
 
+  std::vector<std::array<float, 4>> inverses_;  // of a leaf
   Polygon points_, hull_, piece_, scratch_;
   std::vector<HalfPlane> planes_;
   std::vector<std::int32_t> open_, seen_, leaves_;  // triangles, triangles' last pair, leaves of a region
@@ -250,6 +260,7 @@ void Builder::ShapeLeaf(std::int32_t leaf) {
   const auto axis = static_cast<int>(std::max_element(normal, normal + 3, smaller) - normal);
   bool isFlat = clusters_.hasOnlyTriangles[Index(leaf)] != 0;
   double slope = 0, altitude = std::numeric_limits<double>::infinity();
+  inverses_.clear();
   for (std::int32_t t = begin; t < end; ++t) {
     const Vec2 a = Place(At(t).a, axis), ab = Minus(Place(At(t).b, axis), a), ac = Minus(Place(At(t).c, axis), a);
     const double twice = Cross(ab, ac);
@@ -258,9 +269,10 @@ void Builder::ShapeLeaf(std::int32_t leaf) {
     const double sides[] = {Size(ab), Size(ac), Size(Minus(ac, ab))};
     altitude = std::min(altitude, std::abs(twice) / *std::max_element(sides, sides + 3));
     slope = std::max(slope, (sides[0] + sides[1] + sides[2]) / std::abs(twice));
-    regions_.inverse.push_back({static_cast<float>(ac.y / twice), static_cast<float>(-ac.x / twice),
-                                static_cast<float>(-ab.y / twice), static_cast<float>(ab.x / twice)});
+    inverses_.push_back({static_cast<float>(ac.y / twice), static_cast<float>(-ac.x / twice),
+                         static_cast<float>(-ab.y / twice), static_cast<float>(ab.x / twice)});
   }
+  AddInverses(inverses_);
   altitude_.push_back(altitude);
   points_.clear();
   if (isFlat) {
@@ -271,6 +283,13 @@ void Builder::ShapeLeaf(std::int32_t leaf) {
   hulls_.push_back(points_);
   view_.push_back(!isFlat ? -1 : normal[axis] > 0 ? axis : axis + 3);
   regions_.greatestSlope.push_back(isFlat ? static_cast<float>(slope * (1 + 1e-6)) : -1.0f);
+}
+
+void Builder::AddInverses(const std::vector<std::array<float, 4>>& ofLeaf) {
+  const auto next = static_cast<std::int32_t>(regions_.inverse.size());
+  const std::int32_t first = ofLeaf.empty() ? 0 : inverseFirst_.try_emplace(ofLeaf, next).first->second;
+  if (first == next) regions_.inverse.insert(regions_.inverse.end(), ofLeaf.begin(), ofLeaf.end());
+  regions_.inverseFirst.push_back(first);
 }
 
 /// Adds the region of two leaves, if they have one.
@@ -346,6 +365,7 @@ void Builder::AddAround(std::int32_t leaf) {
 FlatRegions Builder::Make() {
   FindNeighbours();
   for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) ShapeLeaf(leaf);
+  inverseFirst_.clear();
   FindLeafNeighbours();
   regions_.first = regions_.regionFirst = regions_.aroundFirst = {0};
   for (std::int32_t leaf = 0; leaf < clusters_.clothLeaves; ++leaf) {
@@ -415,8 +435,8 @@ bool FlatRegions::AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, st
 
 std::size_t FlatRegions::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  return bytes(inverse) + bytes(greatestSlope) + bytes(first) + bytes(other) + bytes(altitude) + bytes(regionFirst) +
-         bytes(region) + bytes(aroundFirst) + bytes(around) + bytes(aroundAltitude);
+  return bytes(inverse) + bytes(inverseFirst) + bytes(greatestSlope) + bytes(first) + bytes(other) + bytes(altitude) +
+         bytes(regionFirst) + bytes(region) + bytes(aroundFirst) + bytes(around) + bytes(aroundAltitude);
 }
 
 FlatRegions MakeFlatRegions(const ContactMesh& mesh, const Clusters& clusters) {

@@ -24,8 +24,10 @@ namespace percale {
 /// Items with no vertex in common are at least the least altitude h of the region's triangles apart in place, as what
 /// starts at a vertex has to cross one of its triangles. So they are at least m h / |G| apart.
 struct FlatRegions {
-  /// Inverse of the edge vectors (b - a, c - a) in place, row by row, in the order of Clusters::triangles [1/m].
+  /// Inverse of the edge vectors (b - a, c - a) in place, row by row [1/m]. Those of a leaf's triangles are from
+  /// inverseFirst[leaf] on, in their order; leaves that are alike, as most of a regular grid are, share them.
   std::vector<std::array<float, 4>> inverse;
+  std::vector<std::int32_t> inverseFirst;
   /// Per leaf: how fast F changes at most when vertices move, the greatest sum of a triangle's three inverse altitudes
   /// [1/m]; or -1: it has no regions.
   std::vector<float> greatestSlope;

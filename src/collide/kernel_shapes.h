@@ -48,7 +48,7 @@ inline int DoubleShapes(const LeafShapeArgs& a, int leaf, Floats8* x, Floats8* y
   const auto twiceMiddle = [&](int v) { return Floats8::Load(a.rows[v].low[0]) + Floats8::Load(a.rows[v].high[0]); };
   for (int t = 0; t < count; ++t) {
     const std::int32_t* corners = a.corners + 3 * (begin + t);
-    const float* inverse = a.inverse + 4 * (begin + t);
+    const float* inverse = a.inverse + 4 * (a.inverseFirst[leaf] + t);
     const Floats8 p = twiceMiddle(corners[0]), ab = twiceMiddle(corners[1]) - p, ac = twiceMiddle(corners[2]) - p;
     x[t] = ab * Floats8(inverse[0]) + ac * Floats8(inverse[2]);
     y[t] = ab * Floats8(inverse[1]) + ac * Floats8(inverse[3]);

@@ -70,8 +70,9 @@ struct LeafShapeArgs {
   const std::int32_t* corners;  ///< Of the triangles.
   const std::int32_t* vertexFirst;
   const std::int32_t* vertices;
-  const float* inverse;        ///< As FlatRegions has it.
-  const float* greatestSlope;  ///< As FlatRegions has it; leaves that have none are left out.
+  const float* inverse;
+  const std::int32_t* inverseFirst;  ///< As FlatRegions has them.
+  const float* greatestSlope;        ///< As FlatRegions has it; leaves that have none are left out.
   const BoxRow* rows;
   const BoxBlock* boxes;  ///< Of leaves.
   bool haveCuts;          ///< Whether any vertex may be cut.

@@ -257,6 +257,7 @@ LeafShapeArgs PairFinder::Impl::ShapeArgs(int begin, int end, bool haveCuts) {
           .vertexFirst = clusters.vertexFirst.data(),
           .vertices = clusters.vertices.data(),
           .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
+          .inverseFirst = regions.inverseFirst.data(),
           .greatestSlope = regions.greatestSlope.data(),
           .rows = rows.data(),
           .boxes = levels[0].data(),

@@ -305,7 +305,7 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
   std::copy(cloth.begin(), cloth.end(), start_.begin());
   std::copy(obstacle_.begin(), obstacle_.end(), start_.begin() + static_cast<std::ptrdiff_t>(cloth.size()));
   std::vector<Intersection> met;
-  if (distances_.clothPairs || !obstacle_.empty()) {
+  if ((distances_.clothPairs || !obstacle_.empty()) && !NothingIsNear()) {
     if (!judge_) judge_.emplace(mesh_.vertices(), mesh_.triangles, mesh_.clothVertices);
     met = judge_->Count(start_, executor_, kMostTangled).first;
   }
@@ -324,6 +324,14 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
   }
   judged_ = true;
   listed_ = false;  // A list says which pairs are let be.
+}
+
+/// Whether at start_ no two things are near each other but those with a vertex in common. Then nothing meets: an edge
+/// with one vertex in common with a triangle that it runs on ends on it or crosses the side opposite.
+bool ContactStep::NothingIsNear() {
+  std::fill(way_.begin(), way_.end(), Vec3{});
+  safeMove_.List(start_, way_, distances_);
+  return safeMove_.vertexTriangle().size() == 0 && safeMove_.edgeEdge().size() == 0;
 }
 
 /// Nothing is tangled, so far as is known.

@@ -80,6 +80,7 @@ class ContactStep {
   void Disentangle();
   void FindRoundSurfaces();
   void JudgeLoneEdges(std::vector<Intersection>& met);
+  bool NothingIsNear();
 
   const FabricModel& model_;
   const Executor& executor_;

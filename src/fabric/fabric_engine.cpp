@@ -44,11 +44,12 @@ FabricEngine::FabricEngine(const Scene& scene, FabricModel model, const Executor
       scene_(scene),
       model_(std::move(model)),
       solver_(model_, executor),
+      window_(model_),
       contact_(std::make_unique<ContactStep>(scene, model_, executor)) {
   solver_.objective().SetContacts(&contact_->contacts());
   const std::size_t count = Index(model_.vertexCount);
   free_.assign(count, 1);
-  position_ = previous_ = predicted_ = next_ = begin_ = before_ = model_.start;
+  position_ = previous_ = next_ = begin_ = before_ = model_.start;
   SetUp();
 }
 
@@ -103,7 +104,8 @@ void FabricEngine::UpdatePins() {
 }
 
 void FabricEngine::Reset() {
-  position_ = previous_ = predicted_ = model_.start;
+  position_ = previous_ = model_.start;
+  inBounds_ = true;
   pins_.Reset([&](int v) { return model_.start[Index(v)]; });
   time_ = 0;
   contact_->Restart(scene_, time_);
@@ -128,19 +130,21 @@ bool FabricEngine::ApplyForces(double time, std::span<const Gust> gusts, std::sp
     pinFrom_.push_back(position_[Index(pin.point)]);
     pinTo_.push_back(pin.target);
   }
-  Predict();
+  BeginLoads();
   Blow(time);
   Hold();
-  return std::all_of(predicted_.begin(), predicted_.end(), InBounds);
+  inBounds_ = true;
+  for (std::size_t v = 0; v < position_.size() && inBounds_; ++v) inBounds_ = InBounds(Predicted(v));
+  return inBounds_;
 }
 
 /// Where inertia and weight alone would lead.
-void FabricEngine::Predict() {
-  const Vec3 fall = scene_.simulation.gravity * (h_ * h_);
-  ForRange(executor_, position_.size(), [&](int vertex) {
-    const std::size_t v = Index(vertex);
-    predicted_[v] = position_[v] + (position_[v] - previous_[v]) + fall;
-  });
+Vec3 FabricEngine::Predicted(std::size_t v) const {
+  return position_[v] + (position_[v] - previous_[v]) + Fall();
+}
+
+/// The loads of the step are those that were given.
+void FabricEngine::BeginLoads() {
   loads_.clear();
   if (given_.empty()) return;
   const std::span<VertexLoad> loads = Loads();
@@ -166,26 +170,28 @@ void FabricEngine::Blow(double time) {
   }
   const double density = wind.airDensity > 0 || !gusty ? wind.airDensity : WindSettings().airDensity;
   if (density == 0) return;
-  windLoads_.resize(model_.triangles.size());  // before the first wind there are none
+  windLoads_.resize(std::min(model_.triangles.size(), Index(window_.live())));  // before the first wind there are none
   const Air<double> properties{density, wind.dragCoefficient, kSkinDrag, wind.liftCoefficient};
-  const int triangles = static_cast<int>(model_.triangles.size());
-  executor_.ForChunks(Chunks(triangles), [&](int chunk) {
-    BestKernels().windLoads({.begin = chunk * kRowsPerChunk,
-                             .end = std::min((chunk + 1) * kRowsPerChunk, triangles),
+  const auto evaluate = [&](int begin, int end) {
+    BestKernels().windLoads({.begin = begin,
+                             .end = end,
                              .triangles = model_.triangles.data(),
                              .x = position_.data(),
                              .previous = previous_.data(),
                              .h = h_,
                              .air = properties,
                              .wind = air,
-                             .load = windLoads_.data()});
-  });
+                             .outFirst = begin,
+                             .load = windLoads_.data() + window_.Place(begin)});
+  };
   const std::span<VertexLoad> loads = Loads();
-  ForRange(executor_, position_.size(), [&](int v) {
-    for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
-      const VertexLoad& load = windLoads_[Index(model_.corners.entry[Index(e)] / 3)];
-      loads[Index(v)].stiffness += load.stiffness;
-      loads[Index(v)].force += load.force;
+  window_.ForRows(executor_, evaluate, [&](int begin, int end, const LiveTriangles& live) {
+    for (int v = begin; v < end; ++v) {
+      for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
+        const VertexLoad& load = windLoads_[Index(live.Place(model_.corners.entry[Index(e)]) / 3)];
+        loads[Index(v)].stiffness += load.stiffness;
+        loads[Index(v)].force += load.force;
+      }
     }
   });
 }
@@ -222,7 +228,8 @@ void FabricEngine::Hold() {
       const double share = GripShare(handle, model_.start[Index(v)] - model_.start[Index(centre)]);
       if (share == 0 || !free_[Index(v)]) continue;
       const double stiffness = model_.mass[Index(v)] * share * w * w;
-      loads[Index(v)].stiffness += Diagonal(stiffness + 2 * model_.mass[Index(v)] * share * w / h_);
+      const double diagonal = stiffness + 2 * model_.mass[Index(v)] * share * w / h_;
+      loads[Index(v)].stiffness += {.xx = diagonal, .yy = diagonal, .zz = diagonal};
       loads[Index(v)].force += way * stiffness;
     }
   }
@@ -239,11 +246,11 @@ void FabricEngine::Solve() {
   std::vector<Vec3>& ahead = previous_;
   for (std::size_t p = 0; p < pinTo_.size(); ++p) {
     const std::size_t v = Index(pins_.All()[p].point);
-    next_[v] = ahead[v] = predicted_[v] = pinTo_[p];
+    next_[v] = ahead[v] = pinTo_[p];
   }
   contact_->FindPlanes(begin_, position_, ahead, free_, h_);
   Objective& objective = solver_.objective();
-  objective.Begin({.h = h_, .start = begin_, .predicted = predicted_, .loads = loads_, .free = free_});
+  objective.Begin({.h = h_, .start = begin_, .before = before_, .fall = Fall(), .loads = loads_, .free = free_});
   double least = objective.Energy(next_);
   if (objective.Energy(ahead) < least) {
     std::swap(ahead, next_);
@@ -355,7 +362,7 @@ void FabricEngine::SplitStep(double from, double to, int depth) {
     for (std::size_t p = 0; p < pinTo_.size(); ++p)
       pinTo_[p] = pinFrom_[p] + (pins_.All()[p].target - pinFrom_[p]) * end;
     contact_->MoveColliders(scene_, time);
-    Predict();
+    BeginLoads();
     Blow(time);
     Hold();
     Solve();
@@ -420,7 +427,7 @@ void FabricEngine::WriteState(int cloth, std::span<const Vec3> positions, std::s
   const auto first = static_cast<std::ptrdiff_t>(model_.firstVertex[Index(cloth)]);
   std::copy(positions.begin(), positions.end(), position_.begin() + first);
   std::copy(previous.begin(), previous.end(), previous_.begin() + first);
-  std::copy(positions.begin(), positions.end(), predicted_.begin() + first);
+  inBounds_ = true;
   pins_.WriteAnchors(Index(cloth), anchors, time, [&](int v) { return position_[Index(v)]; });
   time_ = time;
   contact_->Restart(scene_, time_);
@@ -481,7 +488,7 @@ std::span<const double> FabricEngine::Masses(int cloth) const {
 
 VertexRef FabricEngine::FindOutOfBounds() const {
   for (int v = 0; v < model_.vertexCount; ++v) {
-    if (!InBounds(position_[Index(v)]) || !InBounds(predicted_[Index(v)])) return RefOf(v);
+    if (!InBounds(position_[Index(v)]) || (!inBounds_ && !InBounds(Predicted(Index(v))))) return RefOf(v);
   }
   return {};
 }

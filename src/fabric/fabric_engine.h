@@ -14,6 +14,7 @@
 #include "fabric/energy/air.h"
 #include "fabric/fabric_model.h"
 #include "fabric/newton.h"
+#include "fabric/triangle_window.h"
 #include "mesh/engine_types.h"
 #include "mesh/pins.h"
 #include "percale/interaction.h"
@@ -81,7 +82,9 @@ class FabricEngine {
 
  private:
   void SetUp();
-  void Predict();
+  Vec3 Fall() const { return scene_.simulation.gravity * (h_ * h_); }
+  Vec3 Predicted(std::size_t vertex) const;
+  void BeginLoads();
   void Minimise(int iterations);
   bool TryMove(int depth);
   bool Rewind();
@@ -101,13 +104,15 @@ class FabricEngine {
   Scene scene_;
   FabricModel model_;
   NewtonSolver solver_;
+  TriangleWindow window_;
   std::unique_ptr<ContactStep> contact_;
   double h_ = 0;     // of a step [s]
   double time_ = 0;  // of the last step [s]
   Pins pins_;
   std::vector<std::uint8_t> free_;  // per vertex
   std::vector<Vec3> position_, previous_;
-  std::vector<Vec3> predicted_, next_;
+  std::vector<Vec3> next_;
+  bool inBounds_ = true;               // where ApplyForces led
   std::vector<Vec3> begin_, before_;   // Where the step, or the part of it, begins, and where all was one before.
   std::vector<Vec3> pinFrom_, pinTo_;  // per pin: where it is as the whole step begins, and as the part ends
   // What acts in the step:
@@ -115,7 +120,7 @@ class FabricEngine {
   std::vector<Handle> handles_;
   std::vector<Vec3> given_;            // More forces [N]; none, or one per vertex.
   std::vector<VertexLoad> loads_;      // none in a step in which nothing loads
-  std::vector<VertexLoad> windLoads_;  // per triangle, of each of its corners; none without wind
+  std::vector<VertexLoad> windLoads_;  // of each corner of the triangles in the window; none without wind
   std::vector<std::int32_t> touched_;  // of CollideBall
   std::vector<Fold> folds_;            // per hinge; none where none may set
   EngineCounts counts_;

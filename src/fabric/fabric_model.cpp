@@ -42,16 +42,13 @@ void Append(const RestMesh& mesh, double warpAngle, FabricModel& model, std::vec
   const int first = model.vertexCount;
   model.firstVertex.push_back(first);
   model.firstTriangle.push_back(static_cast<int>(model.triangles.size()));
-  const auto cloth = static_cast<std::int32_t>(model.firstVertex.size() - 1);
   model.vertexCount += static_cast<int>(mesh.positions.size());
   const std::size_t triangles = model.triangles.size() + mesh.triangles.size();
   model.triangles.reserve(triangles);
-  model.clothOf.reserve(triangles);
   material.reserve(3 * triangles);
   model.start.insert(model.start.end(), mesh.positions.begin(), mesh.positions.end());
   for (const Triangle& t : mesh.triangles) {
     model.triangles.push_back({t.a + first, t.b + first, t.c + first});
-    model.clothOf.push_back(cloth);
   }
   for (const Vec2& p : mesh.material) material.push_back(AlongWarp(p, warpAngle));
 }
@@ -136,8 +133,7 @@ Plate PlateOf(const FabricModel& model, std::int32_t triangle) {
 /// Adds up the plates row by row: what touches a vertex are its own triangles, and those across an edge from it.
 void AssemblePlates(FabricModel& model) {
   model.plates = ScalarMatrix();
-  model.plates.first.reserve(Index(model.vertexCount) + 1);
-  model.plates.first.push_back(0);
+  RowSharer<double> plates(model.vertexCount);
   std::vector<std::int32_t> triangles;
   std::vector<std::pair<std::int32_t, double>> row;
   for (int v = 0; v < model.vertexCount; ++v) {
@@ -161,10 +157,10 @@ void AssemblePlates(FabricModel& model) {
         }
       }
     }
-    AppendRow(model.plates, row);
+    SumByColumn(row);
+    plates.Append(row);
   }
-  model.plates.column.shrink_to_fit();
-  model.plates.value.shrink_to_fit();
+  model.plates = plates.Take();
 }
 
 /// Makes the corners that agree on a vertex and its place in the material one point. `material`: per corner.
@@ -235,7 +231,7 @@ std::vector<Factors> FindFactors(const Scene& scene, const FabricModel& model) {
 }
 
 const ClothSettings& ClothOf(const Scene& scene, const FabricModel& model, const FabricHinge& hinge) {
-  return scene.cloths[Index(model.clothOf[Index(hinge.triangle[0])])];
+  return scene.cloths[model.ClothOf(hinge.triangle[0])];
 }
 
 /// Angles at which folds set: a yield curvature over the width that a hinge stands for, (A1 + A2) / |e|.
@@ -333,7 +329,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& triangle = model.triangles[t];
     const std::int32_t corners[3] = {triangle.a, triangle.b, triangle.c};
-    const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
+    const ClothSettings& cloth = scene.cloths[model.ClothOf(static_cast<std::int64_t>(t))];
     const double density = cloth.density * factorsOf(t).density;
     const double area = model.Rest(t).area;
     for (const std::int32_t v : corners) model.mass[Index(v)] += density * area / 3;
@@ -374,7 +370,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   model.buckling.assign(model.triangles.size() + kTrianglePad, 0);
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const Triangle& tri = model.triangles[t];
-    const ClothSettings& cloth = scene.cloths[Index(model.clothOf[t])];
+    const ClothSettings& cloth = scene.cloths[model.ClothOf(static_cast<std::int64_t>(t))];
     const double mixed = std::sqrt(cloth.bendWarp * cloth.bendWeft) * factorsOf(t).bend;
     const double mass = model.mass[Index(tri.a)] + model.mass[Index(tri.b)] + model.mass[Index(tri.c)];
     const double area = model.Rest(t).area;

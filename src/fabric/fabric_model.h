@@ -3,6 +3,7 @@
 /// What the cloths of a scene are, apart from their state: all of them in one set of arrays. Geometry is built once;
 /// what depends on materials follows changes of the settings.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -51,7 +52,6 @@ struct FabricModel {
   std::vector<Vec2> chart;               ///< Where vertices lie in the material, each place once, u along the warp [m].
   std::vector<Triangle> chartTriangles;  ///< The triangles, of points of the chart; none where point p is vertex p.
   bool hasPanels = false;                ///< Whether triangles lie side by side in the material.
-  std::vector<std::int32_t> clothOf;     ///< Per triangle.
   std::vector<FabricHinge> hinges;       ///< None of these four where no cloth bends by them, or did before.
   std::vector<int> firstHinge;           ///< Per cloth, and the end.
   std::vector<std::array<std::int32_t, 3>> hingeOf;  ///< Per triangle those opposite of its corners; -1 at a border.
@@ -78,6 +78,10 @@ struct FabricModel {
   bool anyHinges = false;                ///< Whether any cloth bends by BendingLaw::Hinges.
 
   int Cloths() const { return static_cast<int>(firstVertex.size()) - 1; }
+  std::size_t ClothOf(std::int64_t triangle) const {
+    const auto behind = std::upper_bound(firstTriangle.begin(), firstTriangle.end(), triangle);
+    return static_cast<std::size_t>(behind - firstTriangle.begin()) - 1;
+  }
   /// The triangles, of points of the chart.
   std::span<const Triangle> ChartTriangles() const { return chartTriangles.empty() ? triangles : chartTriangles; }
   /// Where a triangle's corner 0, 1, 2 lies in the material [m].

@@ -37,16 +37,26 @@ inline void StoreBlock(Columns a, Real s, Real* block) {
   for (int r = 0; r < 3; ++r) block[6 + r] = a.c[2][r];
 }
 
-void Assemble(const AssembleArgs& a) {
+template <class Code>
+void AssembleBy(const AssembleArgs& a, const Code* codes) {
   for (int row = a.begin; row < a.end; ++row) {
     Columns sum;
     std::int32_t next = a.storedFirst[row] + 1;
+    const std::int32_t* const corners = a.corner + a.cornerFirst[row];
+    const Code* code = codes + 2 * static_cast<std::int64_t>(a.cornerFirst[row]);
     for (std::int32_t k = a.first[row]; k < a.first[row + 1]; ++k) {
       if (a.column[k] == row) continue;
       Columns block;
-      for (std::int32_t e = a.sameFirst[k]; e < a.sameFirst[k + 1]; ++e) block += LoadColumns(a.hessian + a.same[e]);
-      for (std::int32_t e = a.transposedFirst[k]; e < a.transposedFirst[k + 1]; ++e) {
-        block += Transposed(LoadColumns(a.hessian + a.transposed[e]));
+      for (bool last = false; !last; ++code) {
+        last = (*code & 1) != 0;
+        std::int32_t place = corners[*code >> 3] - a.cornersBegin;
+        if (place < 0) place += a.corners;
+        const Real* own = a.hessian + 9 * static_cast<std::int64_t>(place);
+        const int from = *code >> 1 & 3;
+        if (from == 0)
+          block += LoadColumns(own);
+        else
+          block += Transposed(LoadColumns(from == 1 ? own - 9 : own + 18));
       }
       sum += block;
       if (a.column[k] < row) continue;
@@ -57,4 +67,11 @@ void Assemble(const AssembleArgs& a) {
     const std::int32_t diagonal = a.storedFirst[row];
     StoreBlock(sum, a.constant[diagonal], a.blocks + 9 * static_cast<std::int64_t>(diagonal));
   }
+}
+
+void Assemble(const AssembleArgs& a) {
+  if (a.parts)
+    AssembleBy(a, a.parts);
+  else
+    AssembleBy(a, a.wideParts);
 }

@@ -48,8 +48,10 @@ double PlateForces(const PlateArgs& a) {
   double squares = 0;
   for (int v = a.begin; v < a.end; ++v) {
     if (!a.isPlate[v]) continue;
-    WaySums ways(a.x[v]);
-    for (std::int32_t k = a.first[v]; k < a.first[v + 1]; ++k) ways.Add(a.value[k], a.x[a.column[k]]);
+    const std::int32_t kind = a.kind[v];
+    const Vec3* const at = a.x + v;
+    WaySums ways(*at);
+    for (std::int32_t k = a.first[kind]; k < a.first[kind + 1]; ++k) ways.Add(a.value[k], at[a.offset[k]]);
     ways.StoreSum(a.force[v]);
     squares += ways.Squares();
   }

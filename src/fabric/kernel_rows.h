@@ -81,8 +81,10 @@ inline void ForRows(const RowsArgs& a, Store&& store) {
       }
     }
     Floats4 rest;
-    for (std::int32_t k = a.restFirst[row]; k < a.restFirst[row + 1]; ++k) {
-      rest += Floats4::Load(a.x + 3 * static_cast<std::int64_t>(a.restColumn[k])) * Floats4(a.restValue[k]);
+    const std::int32_t kind = a.restKind[row];
+    const Real* const at = a.x + 3 * static_cast<std::int64_t>(row);
+    for (std::int32_t k = a.restFirst[kind]; k < a.restFirst[kind + 1]; ++k) {
+      rest += Floats4::Load(at + 3 * static_cast<std::int64_t>(a.restOffset[k])) * Floats4(a.restValue[k]);
     }
     store(row, sum.Total() + rest);
   }

@@ -21,13 +21,15 @@
         MakeWindLoad(air, wind, Vector3<Doubles>{}, edges.first, edges.second, way * perStep);
     const Matrix3<Doubles> stiffness = load.drag * perStep;
     const Vector3<Doubles> force = (load.drag * load.wind + load.lift) * third;
-    double lanes[12][kLanes];
-    for (int k = 0; k < 9; ++k) stiffness.m[k].Store(lanes[k]);
-    force.x.Store(lanes[9]), force.y.Store(lanes[10]), force.z.Store(lanes[11]);
+    double lanes[9][kLanes];
+    for (int k = 0; k < 3; ++k) stiffness.m[4 * k].Store(lanes[k]);
+    stiffness.m[1].Store(lanes[3]), stiffness.m[2].Store(lanes[4]), stiffness.m[5].Store(lanes[5]);
+    force.x.Store(lanes[6]), force.y.Store(lanes[7]), force.z.Store(lanes[8]);
     for (int i = 0; i < count; ++i) {
-      VertexLoad& to = a.load[first + i];
-      for (int k = 0; k < 9; ++k) to.stiffness.m[k] = lanes[k][i];
-      to.force.x = lanes[9][i], to.force.y = lanes[10][i], to.force.z = lanes[11][i];
+      VertexLoad& to = a.load[first + i - a.outFirst];
+      to.stiffness.xx = lanes[0][i], to.stiffness.yy = lanes[1][i], to.stiffness.zz = lanes[2][i];
+      to.stiffness.xy = lanes[3][i], to.stiffness.xz = lanes[4][i], to.stiffness.yz = lanes[5][i];
+      to.force.x = lanes[6][i], to.force.y = lanes[7][i], to.force.z = lanes[8][i];
     }
   });
 }

@@ -20,7 +20,7 @@ namespace percale::fabric {
 /// Kernels read so many numbers behind the last triangle's.
 inline constexpr int kTrianglePad = 8;
 /// Reals that a triangle's second derivative takes.
-inline constexpr int kHessianReals = 28;
+inline constexpr int kHessianReals = 27;
 
 /// Some triangles of one cloth. Arrays are from the first triangle of all on.
 struct MembraneArgs {
@@ -40,13 +40,13 @@ struct MembraneArgs {
   // Out, for triangles from `outFirst` on:
   int outFirst;
   Vec3* gradient;  ///< By corner a, b, c of each triangle [N].
-  Real* hessian;   ///< Per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m]; then one Real.
+  Real* hessian;   ///< Per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m].
 };
 
 /// What pulls at a vertex beside gravity over one step, quadratic in its way w = y - x: energy ½ wᵀ B w - f·w [J].
 struct VertexLoad {
-  Matrix3<double> stiffness;  ///< B, symmetric and without negative eigenvalues [N/m].
-  Vec3 force;                 ///< f [N].
+  SymmetricMatrix3<double> stiffness;  ///< B, without negative eigenvalues [N/m].
+  Vec3 force;                          ///< f [N].
 };
 
 /// The wind on some triangles, of any cloths. Arrays are from the first triangle or vertex of all on.
@@ -58,35 +58,38 @@ struct WindArgs {
   double h;              ///< Of the step [s].
   Air<double> air;
   Vec3 wind;         ///< [m/s]
-  VertexLoad* load;  ///< Out: per triangle what it loads each of its corners with.
+  int outFirst;      ///< Out, for triangles from this one on:
+  VertexLoad* load;  ///< Per triangle what it loads each of its corners with.
 };
 
 /// Some rows of the matrix of plates.
 struct PlateArgs {
   int begin, end;
+  // As SharedRows has them [N/m]:
+  const std::int32_t* kind;
   const std::int32_t* first;
-  const std::int32_t* column;
-  const double* value;          ///< In compressed rows [N/m].
+  const std::int32_t* offset;
+  const double* value;
   const std::uint8_t* isPlate;  ///< Per row: 0 where it does not count.
   const Vec3* x;                ///< Positions [m].
   Vec3* force;                  ///< Out, in rows that count: the row times the positions [N].
 };
 
-/// Some rows of the matrix. Arrays are from the first row, block or triangle of all on.
+/// Some rows of the matrix. Arrays are from the first row or block of all on.
 struct AssembleArgs {
   int begin, end;
   const std::int32_t* first;        ///< As in BlockPattern.
   const std::int32_t* column;       ///< As in BlockPattern.
   const std::int32_t* storedFirst;  ///< As SystemMatrix has it: blocks left of the diagonal are not stored.
   const Real* constant;             ///< Per stored block the scalar that stands on its diagonal besides.
-  // Per block off the diagonal the blocks of triangles that it is the sum of, as places in `hessian`: as they are, and
-  // transposed. Those of block k are [first[k], first[k + 1]).
-  const std::int32_t* sameFirst;
-  const std::int32_t* same;
-  const std::int32_t* transposedFirst;
-  const std::int32_t* transposed;
-  const Real* hessian;  ///< As MembraneArgs has it.
-  Real* blocks;         ///< Out.
+  const std::int32_t* cornerFirst;  ///< The corners of row v are [cornerFirst[v], cornerFirst[v + 1]) of ...
+  const std::int32_t* corner;       ///< ... these: 3 * triangle + 0, 1, 2.
+  // Codes of BlockPart, of either type; the other is null.
+  const std::uint8_t* parts;
+  const std::uint32_t* wideParts;
+  std::int32_t cornersBegin, corners;  ///< As LiveTriangles has them, three times.
+  const Real* hessian;                 ///< As MembraneArgs has it; one more can be read at the end.
+  Real* blocks;                        ///< Out.
 };
 
 /// Some rows of a SystemMatrix and vectors over all rows. Arrays are from the first row or block of all on.
@@ -97,9 +100,10 @@ struct RowsArgs {
   const std::int32_t* storedFirst;
   const std::int32_t* mirror;  ///< As SystemMatrix has them.
   const Real* blocks;          ///< Nine per stored block, column by column; one more can be read at the end.
+  const std::int32_t* restKind;
   const std::int32_t* restFirst;
-  const std::int32_t* restColumn;
-  const Real* restValue;  ///< Scalars outside the pattern, in compressed rows.
+  const std::int32_t* restOffset;
+  const Real* restValue;  ///< Scalars outside the pattern, as SharedRows has them.
   const std::int32_t* extraBegin;
   const std::int32_t* extraEnd;
   const std::int32_t* extraColumn;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fabric/real4.h"
+#include "fabric/slots.h"
 #include "fabric/window.h"
 
 namespace percale::fabric {
@@ -18,36 +19,6 @@ constexpr int kRestrictChunk = 128;  // nodes that one chunk restricts to
 constexpr int kExtraParts = 16;      // each marks all nodes of a level, so there is a fixed number of them
 constexpr int kMostDirect = 200;     // nodes up to which the coarsest level is factored: 6 ms
 constexpr int kCoarsestSweeps = 4;   // of Jacobi where it is larger
-
-/// Numbers below 2^16, in one byte each where all are below 2^8, as those of meshes are that are no fans.
-class Slots {
- public:
-  void push_back(std::ptrdiff_t slot) {
-    assert(slot >= 0 && slot <= 0xffff);
-    if (wide_.empty() && slot <= 0xff) return narrow_.push_back(static_cast<std::uint8_t>(slot));
-    wide_.insert(wide_.end(), narrow_.begin(), narrow_.end());
-    narrow_.clear();
-    wide_.push_back(static_cast<std::uint16_t>(slot));
-  }
-  void shrink_to_fit() {
-    narrow_.shrink_to_fit();
-    wide_.shrink_to_fit();
-  }
-  std::int32_t size() const { return static_cast<std::int32_t>(narrow_.size() + wide_.size()); }
-  std::size_t Bytes() const { return narrow_.capacity() + 2 * wide_.capacity(); }
-  /// Calls visit(array), of either type.
-  template <class Visit>
-  void InArray(Visit&& visit) const {
-    if (wide_.empty())
-      visit(narrow_.data());
-    else
-      visit(wide_.data());
-  }
-
- private:
-  std::vector<std::uint8_t> narrow_;
-  std::vector<std::uint16_t> wide_;
-};
 
 template <class T, class Allocator>
 std::size_t Bytes(const std::vector<T, Allocator>& array) {
@@ -117,32 +88,31 @@ const Prolongation& Multigrid::prolongation(int level) const {
 namespace {
 
 /// P' S P, node by node. `rowFirst`, `row`, `rowWeight`: P' in compressed rows.
-ScalarMatrix CoarseScalars(const ScalarRows& fine, const Prolongation& p, const std::vector<std::int32_t>& rowFirst,
-                           const std::vector<std::int32_t>& rowOf, const std::vector<Real>& rowWeight) {
-  ScalarMatrix coarse;
-  coarse.first.push_back(0);
+ScalarMatrix CoarseScalars(const SharedRows<Real>& fine, const Prolongation& p,
+                           const std::vector<std::int32_t>& rowFirst, const std::vector<std::int32_t>& rowOf,
+                           const std::vector<Real>& rowWeight) {
+  RowSharer<double> coarse(p.nodes);
+  std::vector<std::pair<std::int32_t, double>> entries;  // of a row
   std::vector<double> sum(p.nodes, 0);
   std::vector<std::int32_t> seenBy(p.nodes, -1), columns;
   for (int node = 0; node < p.nodes; ++node) {
     columns.clear();
     for (std::int32_t e = rowFirst[node]; e < rowFirst[node + 1]; ++e) {
-      for (std::int32_t k = fine.first[rowOf[e]]; k < fine.first[rowOf[e] + 1]; ++k) {
-        const double value = static_cast<double>(rowWeight[e]) * static_cast<double>(fine.value[k]);
-        for (std::int32_t f = p.first[fine.column[k]]; f < p.first[fine.column[k] + 1]; ++f) {
+      fine.ForRow(rowOf[e], [&](std::int32_t other, Real entry) {
+        const double value = static_cast<double>(rowWeight[e]) * static_cast<double>(entry);
+        for (std::int32_t f = p.first[other]; f < p.first[other + 1]; ++f) {
           const std::int32_t column = p.column[f];
           if (std::exchange(seenBy[column], node) != node) columns.push_back(column), sum[column] = 0;
           sum[column] += value * static_cast<double>(p.weight[f]);
         }
-      }
+      });
     }
     std::sort(columns.begin(), columns.end());
-    for (const std::int32_t column : columns) {
-      coarse.column.push_back(column);
-      coarse.value.push_back(sum[column]);
-    }
-    coarse.first.push_back(static_cast<std::int32_t>(coarse.column.size()));
+    entries.clear();
+    for (const std::int32_t column : columns) entries.push_back({column, sum[column]});
+    coarse.Append(entries);
   }
-  return coarse;
+  return coarse.Take();
 }
 
 }  // namespace

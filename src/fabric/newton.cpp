@@ -32,7 +32,7 @@ NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
       executor_(executor),
       matrix_(MakePattern(model.vertexCount, model.triangles)),
       objective_(model, matrix_.pattern(), executor) {
-  gradient_.resize(Index(model.vertexCount));
+  gradient_ = objective_.scratch();
   trial_.resize(Index(model.vertexCount));
   right_.assign(VectorLength(model.vertexCount), 0);
   direction_.assign(VectorLength(model.vertexCount), 0);
@@ -56,11 +56,9 @@ void NewtonSolver::SetUp(double h, std::span<const std::uint8_t> free) {
 
 /// Inertia is all that the length of a step changes in the constant part: masses over h^2 on the diagonal.
 void NewtonSolver::SetStep(double h) {
-  const ScalarMatrix& plates = model_.plates;
   ForRange(executor_, Index(model_.vertexCount), [&](int row) {
-    const auto begin = plates.column.begin() + plates.first[Index(row)];
-    const auto end = plates.column.begin() + plates.first[Index(row) + 1];
-    const double bending = plates.value[Index(std::lower_bound(begin, end, row) - plates.column.begin())];
+    double bending = 0;
+    model_.plates.ForRow(row, [&](std::int32_t column, double value) { bending = column == row ? value : bending; });
     matrix_.SetConstant(row, static_cast<Real>(bending + model_.mass[Index(row)] / (h * h)));
   });
 }

@@ -54,7 +54,8 @@ class NewtonSolver {
   Objective objective_;
   Multigrid multigrid_;
   ConjugateGradient conjugateGradient_;
-  std::vector<Vec3> gradient_, trial_;
+  std::span<Vec3> gradient_;  // in the objective's memory
+  std::vector<Vec3> trial_;
   RealVector right_, direction_;
   double trialEnergy_ = 0;
   std::vector<std::array<double, 2>> chunkSums_;

@@ -14,10 +14,6 @@ namespace {
 /// second derivative: so far wrinkles may form within one Newton step. See docs/solver.md.
 constexpr double kCompressionShare = 1;
 
-/// Rows of the matrix whose triangles are evaluated at once: what these come to takes 6 MB, and each thread of some has
-/// a few chunks.
-constexpr int kRowsPerSlab = 32 * kRowsPerChunk;
-
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
 }
@@ -30,19 +26,22 @@ Vector3<double> At(std::span<const Vec3> y, std::int32_t v) {
 
 Objective::Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor,
                      const Kernels& kernels)
-    : model_(model), pattern_(pattern), executor_(executor), kernels_(kernels) {
+    : model_(model),
+      pattern_(pattern),
+      executor_(executor),
+      kernels_(kernels),
+      parts_(FindBlockParts(pattern, model.triangles, model.corners)),
+      window_(model) {
   const std::size_t triangles = model.triangles.size();
-  FindWindow();
-  FindParts();
   for (int c = 0; c < model.Cloths(); ++c) {
     const int end = model.firstTriangle[Index(c) + 1];
     for (int t = model.firstTriangle[Index(c)]; t < end; t += kRowsPerChunk) {
       batches_.push_back({c, t, std::min(t + kRowsPerChunk, end)});
     }
   }
-  const auto live = std::min(triangles, static_cast<std::size_t>(window_.slots) * kRowsPerChunk);
+  const std::size_t live = std::min(triangles, Index(window_.live()));
   triangleGradient_.resize(3 * live);
-  triangleHessian_.assign(kHessianReals * live, 0);
+  triangleHessian_.assign(kHessianReals * live + 1, 0);
   plateForce_.resize(static_cast<std::size_t>(model.vertexCount));
   const auto items = std::max(static_cast<std::size_t>(model.vertexCount), triangles);
   chunkSums_.resize(std::max(batches_.size(), items / kRowsPerChunk + 1));
@@ -56,37 +55,6 @@ void Objective::TakeMaterials() {
   const std::size_t hinges = model_.anyHinges ? model_.hinges.size() : 0;
   for (std::vector<double>* perHinge : {&startAngle_, &angle_, &moment_}) perHinge->resize(hinges);
   hinge_.resize(hinges);
-}
-
-/// Which triangles the rows of the matrix are the sums of.
-void Objective::FindWindow() {
-  const auto makers = static_cast<std::int32_t>(Chunks(static_cast<int>(model_.triangles.size())));
-  const auto slabs = Index(Chunks(model_.vertexCount, kRowsPerSlab));
-  std::vector<std::int32_t> first(slabs, makers), last(slabs, -1);
-  for (int v = 0; v < model_.vertexCount; ++v) {
-    const std::int32_t begin = model_.corners.first[Index(v)], end = model_.corners.first[Index(v) + 1];
-    if (begin == end) continue;
-    std::int32_t &least = first[Index(v / kRowsPerSlab)], &most = last[Index(v / kRowsPerSlab)];
-    least = std::min(least, model_.corners.entry[Index(begin)] / 3 / kRowsPerChunk);
-    most = std::max(most, model_.corners.entry[Index(end - 1)] / 3 / kRowsPerChunk);
-  }
-  window_ = MakeWindow(makers, first, last);
-}
-
-/// Where what is evaluated of a triangle lies.
-std::int32_t Objective::Place(std::int64_t triangle) const {
-  return static_cast<std::int32_t>(triangle % (static_cast<std::int64_t>(window_.slots) * kRowsPerChunk));
-}
-
-/// Which blocks of triangles each block of the matrix is the sum of.
-void Objective::FindParts() {
-  const std::vector<std::array<std::int32_t, 9>> blocks = TriangleBlocks(pattern_, model_.triangles);
-  const std::size_t count = 3 * blocks.size();  // 3 t + k is corner k of triangle t with corner k + 1
-  same_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][e % 3 * 3 + (e + 1) % 3]; });
-  transposed_ = ListBy(pattern_.blocks(), count, [&](std::size_t e) { return blocks[e / 3][(e + 1) % 3 * 3 + e % 3]; });
-  for (Lists* lists : {&same_, &transposed_}) {
-    for (std::int32_t& e : lists->entry) e = Place(e / 3) * kHessianReals + e % 3 * 9;
-  }
 }
 
 /// Sums body(begin, end) over chunks of 0..count-1, in order.
@@ -120,7 +88,7 @@ double Objective::Energy(std::span<const Vec3> y) {
     double sum = 0;
     for (int v = begin; v < end; ++v) {
       if (!step_.free[Index(v)]) continue;
-      const Vec3 off = y[Index(v)] - step_.predicted[Index(v)];
+      const Vec3 off = y[Index(v)] - step_.Predicted(Index(v));
       double cost = 0.5 * model_.mass[Index(v)] * perStep * Dot(off, off);
       if (!step_.loads.empty()) {
         const VertexLoad& load = step_.loads[Index(v)];
@@ -178,8 +146,8 @@ MembraneArgs Objective::Arguments(std::span<const Vec3> y, const Batch& of) {
           .buckling = model_.buckling.data(),
           .compression = kCompressionShare * perStep,
           .outFirst = of.begin,
-          .gradient = triangleGradient_.data() + 3 * Index(Place(of.begin)),
-          .hessian = triangleHessian_.data() + kHessianReals * Index(Place(of.begin))};
+          .gradient = triangleGradient_.data() + 3 * Index(window_.Place(of.begin)),
+          .hessian = triangleHessian_.data() + kHessianReals * Index(window_.Place(of.begin))};
 }
 
 double Objective::MembraneEnergy(std::span<const Vec3> y) {
@@ -214,8 +182,9 @@ double Objective::PlateEnergy(std::span<const Vec3> y) {
   return -0.25 * Sum(model_.vertexCount, [&](int begin, int end) {
     return kernels_.plateForces({.begin = begin,
                                  .end = end,
+                                 .kind = q.kind.data(),
                                  .first = q.first.data(),
-                                 .column = q.column.data(),
+                                 .offset = q.offset.data(),
                                  .value = q.value.data(),
                                  .isPlate = model_.plate.data(),
                                  .x = y.data(),
@@ -240,7 +209,7 @@ void Objective::EvaluateHinges(std::span<const Vec3> y, bool withGradient) {
 
 /// What bending a triangle costs, and the moments on its hinges.
 BendingMoments<double> Objective::Bend(int t) const {
-  const double time = model_.bendDamping[Index(model_.clothOf[Index(t)])];
+  const double time = model_.bendDamping[model_.ClothOf(t)];
   EdgeAngles<double> angle, rest;
   BendingDamping<double> damping;
   damping.rate = step_.h > 0 ? time / step_.h : 0;
@@ -254,11 +223,10 @@ BendingMoments<double> Objective::Bend(int t) const {
   return Moments(model_.bending[Index(t)], angle, rest, damping);
 }
 
-/// Of kRowsPerChunk triangles, whatever cloths they are of.
-void Objective::EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int block) {
-  const std::int32_t end = std::min((block + 1) * kRowsPerChunk, static_cast<int>(model_.triangles.size()));
-  for (std::int32_t begin = block * kRowsPerChunk; begin < end;) {
-    const std::int32_t cloth = model_.clothOf[Index(begin)];
+/// Of some triangles, whatever cloths they are of.
+void Objective::EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int begin, int end) {
+  while (begin < end) {
+    const auto cloth = static_cast<std::int32_t>(model_.ClothOf(begin));
     const Batch batch{cloth, begin, std::min(end, model_.firstTriangle[Index(cloth) + 1])};
     const MembraneArgs arguments = Arguments(y, batch);
     (withTangent ? kernels_.membraneTangent : kernels_.membraneGradient)(arguments);
@@ -277,25 +245,12 @@ void Objective::AddPressure(std::span<const Vec3> y, const MembraneArgs& to, dou
   }
 }
 
-/// Evaluates triangles, and calls rows(begin, end) for rows of the matrix whose triangles are evaluated.
-template <class Rows>
-void Objective::ForRows(std::span<const Vec3> y, bool withTangent, Rows&& rows) {
-  int made = 0;
-  for (int slab = 0; slab < static_cast<int>(window_.end.size()); ++slab) {
-    const int first = std::exchange(made, window_.end[Index(slab)]);
-    executor_.ForChunks(made - first, [&](int block) { EvaluateTriangles(y, withTangent, first + block); });
-    const int begin = slab * kRowsPerSlab, count = std::min(kRowsPerSlab, model_.vertexCount - begin);
-    executor_.ForChunks(Chunks(count), [&](int chunk) {
-      const int from = begin + chunk * kRowsPerChunk;
-      rows(from, std::min(from + kRowsPerChunk, begin + count));
-    });
-  }
-}
-
 void Objective::Gradient(std::span<const Vec3> y, std::span<Vec3> gradient) {
   PlateEnergy(y);
   SumMoments(y);
-  ForRows(y, false, [&](int begin, int end) { Gather(y, gradient, begin, end); });
+  window_.ForRows(
+      executor_, [&](int begin, int end) { EvaluateTriangles(y, false, begin, end); },
+      [&](int begin, int end, const LiveTriangles& live) { Gather(y, gradient, begin, end, live); });
   AddTethers(y, gradient);
   if (contacts_) contacts_->AddGradient(y, gradient);
 }
@@ -306,22 +261,26 @@ double Objective::GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gr
     for (int k = 0; k < 9; ++k) block[k] += static_cast<Real>(stiffness.m[k]);  // symmetric
   };
   SumMoments(y);
-  ForRows(y, true, [&](int begin, int end) {
-    Gather(y, gradient, begin, end);
+  const auto assemble = [&](int begin, int end, const LiveTriangles& live) {
+    Gather(y, gradient, begin, end, live);
     kernels_.assemble({.begin = begin,
                        .end = end,
                        .first = pattern_.first.data(),
                        .column = pattern_.column.data(),
                        .storedFirst = matrix.storedFirst().data(),
                        .constant = matrix.constant().data(),
-                       .sameFirst = same_.first.data(),
-                       .same = same_.entry.data(),
-                       .transposedFirst = transposed_.first.data(),
-                       .transposed = transposed_.entry.data(),
+                       .cornerFirst = model_.corners.first.data(),
+                       .corner = model_.corners.entry.data(),
+                       .parts = parts_.narrow(),
+                       .wideParts = parts_.wide(),
+                       .cornersBegin = 3 * live.begin,
+                       .corners = 3 * live.count,
                        .hessian = triangleHessian_.data(),
                        .blocks = matrix.Block(0)});
-    for (int v = begin; v < end && !step_.loads.empty(); ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness);
-  });
+    for (int v = begin; v < end && !step_.loads.empty(); ++v) addToDiagonal(v, step_.loads[Index(v)].stiffness.Full());
+  };
+  window_.ForRows(
+      executor_, [&](int begin, int end) { EvaluateTriangles(y, true, begin, end); }, assemble);
   AddTethers(y, gradient);
   for (const FabricTether& tether : model_.tethers) addToDiagonal(tether.vertex, Pull(tether, y).hessian);
   double change = 0;
@@ -351,15 +310,15 @@ void Objective::SumMoments(std::span<const Vec3> y) {
 }
 
 /// What all terms but tethers and contacts come to at some vertices.
-void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int begin, int end) {
+void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int begin, int end,
+                       const LiveTriangles& live) {
   const double perStep = 1 / (step_.h * step_.h);
-  const auto live = static_cast<std::int32_t>(triangleGradient_.size());
   for (int v = begin; v < end; ++v) {
     if (!step_.free[Index(v)]) {
       gradient[Index(v)] = {};
       continue;
     }
-    const Vec3 off = y[Index(v)] - step_.predicted[Index(v)];
+    const Vec3 off = y[Index(v)] - step_.Predicted(Index(v));
     Vec3 sum = off * (model_.mass[Index(v)] * perStep);
     if (!step_.loads.empty()) {
       const VertexLoad& load = step_.loads[Index(v)];
@@ -367,10 +326,11 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int be
       sum += ToVec3(load.stiffness * From<double>(y[Index(v)] - step_.start[Index(v)]));
     }
     for (std::int32_t e = model_.corners.first[Index(v)]; e < model_.corners.first[Index(v) + 1]; ++e) {
-      sum += triangleGradient_[Index(model_.corners.entry[Index(e)] % live)];
+      sum += triangleGradient_[Index(live.Place(model_.corners.entry[Index(e)]))];
     }
-    sum += plateForce_[Index(v)];
-    if (!model_.plate[Index(v)]) {
+    if (model_.plate[Index(v)]) {
+      sum += plateForce_[Index(v)];
+    } else {
       for (std::int32_t e = model_.hingeEnds.first[Index(v)]; e < model_.hingeEnds.first[Index(v) + 1]; ++e) {
         const std::int32_t place = model_.hingeEnds.entry[Index(e)];
         sum += ToVec3(hinge_[Index(place / 4)].gradient[place % 4] * moment_[Index(place / 4)]);

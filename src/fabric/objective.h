@@ -5,17 +5,19 @@
 ///
 ///     E(y) = |y - x~|²_M / 2h² + membrane + bending + pressure + loads,   x~ = x + h v + h² g
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/executor.h"
+#include "fabric/block_parts.h"
 #include "fabric/contacts.h"
 #include "fabric/energy/point_energy.h"
 #include "fabric/fabric_model.h"
 #include "fabric/kernels.h"
 #include "fabric/system_matrix.h"
-#include "fabric/window.h"
+#include "fabric/triangle_window.h"
 #include "percale/vec3.h"
 
 namespace percale::fabric {
@@ -24,14 +26,18 @@ namespace percale::fabric {
 struct StepSettings {
   double h = 0;                        ///< Length [s].
   std::span<const Vec3> start;         ///< x, where the step begins [m].
-  std::span<const Vec3> predicted;     ///< x~, where inertia and gravity alone would lead [m].
+  std::span<const Vec3> before;        ///< x - h v, where all was a step before [m].
+  Vec3 fall;                           ///< h² g [m].
   std::span<const VertexLoad> loads;   ///< Per vertex; or nothing: none.
   std::span<const std::uint8_t> free;  ///< Per vertex: 0 for pins, whose gradient is zero.
+
+  /// x~, where inertia and gravity alone would lead [m].
+  Vec3 Predicted(std::size_t v) const { return start[v] + (start[v] - before[v]) + fall; }
 };
 
 class Objective {
  public:
-  /// Both must outlive it. `pattern`: of the matrix to be filled, with the blocks of all triangles.
+  /// Both must outlive it. `pattern`: of the matrix to be filled, MakePattern of the model's triangles.
   Objective(const FabricModel& model, const BlockPattern& pattern, const Executor& executor,
             const Kernels& kernels = BestKernels());
 
@@ -56,6 +62,9 @@ class Objective {
   /// changes with that [J].
   double GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix);
 
+  /// Memory for a gradient that is used no longer than until the next call of Energy.
+  std::span<Vec3> scratch() { return plateForce_; }
+
   /// Of membrane and bending alone [J].
   double ElasticEnergy(std::span<const Vec3> y);
 
@@ -70,18 +79,13 @@ class Objective {
   BendingMoments<double> Bend(int triangle) const;
   PointEnergy<double> Pull(const FabricTether& tether, std::span<const Vec3> y) const;
   double PlateEnergy(std::span<const Vec3> y);
-  void FindWindow();
-  void FindParts();
   MembraneArgs Arguments(std::span<const Vec3> y, const Batch& batch);
-  void EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int block);
+  void EvaluateTriangles(std::span<const Vec3> y, bool withTangent, int begin, int end);
   void AddPressure(std::span<const Vec3> y, const MembraneArgs& to, double pressure);
   void EvaluateHinges(std::span<const Vec3> y, bool withGradient);
   void SumMoments(std::span<const Vec3> y);
   void AddTethers(std::span<const Vec3> y, std::span<Vec3> gradient) const;
-  void Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int begin, int end);
-  template <class Rows>
-  void ForRows(std::span<const Vec3> y, bool withTangent, Rows&& rows);
-  std::int32_t Place(std::int64_t triangle) const;
+  void Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int begin, int end, const LiveTriangles& live);
   template <class Body>
   double Sum(int count, Body&& body);
 
@@ -92,18 +96,18 @@ class Objective {
   StepSettings step_;
   std::span<const Fold> folds_;
   Contacts* contacts_ = nullptr;
-  Lists same_, transposed_;  // per block of the pattern: see AssembleArgs
+  Slots parts_;
   std::vector<Batch> batches_;
   // Per triangle, as MembraneArgs has it:
   std::vector<double> startStrain_[3];
   // The same of those that are needed at once:
-  Window window_;  // of kRowsPerChunk triangles each, for kRowsPerSlab rows of the matrix each
+  TriangleWindow window_;
   std::vector<Vec3> triangleGradient_;
   RealVector triangleHessian_;
   // Per hinge, where any cloth bends by them:
   std::vector<double> startAngle_, angle_, moment_;
   std::vector<Hinge<double>> hinge_;
-  std::vector<Vec3> plateForce_;  // per vertex, where PlateEnergy was called last; zero where hinges bend [N]
+  std::vector<Vec3> plateForce_;  // per vertex of a plate, where PlateEnergy was called last [N]
   std::vector<double> chunkSums_;
 };
 

@@ -69,19 +69,19 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
 
   for (int v = 0; v < model_.vertexCount; ++v) {
     if (!step_.free[Index(v)]) continue;
-    const Vector3<double> off = At(y, v) - At(step_.predicted, v), way = At(y, v) - At(step_.start, v);
+    const Vector3<double> off = At(y, v) - From<double>(step_.Predicted(Index(v))), way = At(y, v) - At(step_.start, v);
     const VertexLoad load = step_.loads.empty() ? VertexLoad{} : step_.loads[Index(v)];
     const double inertia = model_.mass[Index(v)] * perStep * perStep;
     const Vector3<double> pulled = load.stiffness * way, force = From<double>(load.force);
     sum += 0.5 * inertia * Dot(off, off) + 0.5 * Dot(way, pulled) - Dot(force, way);
     addGradient(v, off * inertia + pulled - force);
-    block(v, v, Diagonal(inertia) + load.stiffness);
+    block(v, v, Diagonal(inertia) + load.stiffness.Full());
   }
 
   for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
     const Triangle& tri = model_.triangles[t];
     const std::int32_t corners[3] = {tri.a, tri.b, tri.c};
-    const std::size_t cloth = Index(model_.clothOf[t]);
+    const std::size_t cloth = model_.ClothOf(static_cast<std::int64_t>(t));
     // All of a membrane's terms are in proportion to its area, so that of a patch counts as so much more of it.
     RestTriangle<double> rest = model_.Rest(t);
     rest.area *= model_.Strength(t);
@@ -158,17 +158,16 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     block(tether.vertex, tether.vertex, pull.hessian);
   }
 
-  const ScalarMatrix& q = model_.plates;
   for (int v = 0; v < model_.vertexCount; ++v) {
     if (!model_.plate[Index(v)]) continue;
     // Rows sum to zero: counted from v, only short ways cancel.
     Vector3<double> force;
-    for (std::int32_t k = q.first[Index(v)]; k < q.first[Index(v) + 1]; ++k) {
-      const Vector3<double> way = At(y, q.column[Index(k)]) - At(y, v);
-      force += way * q.value[Index(k)];
-      sum -= 0.25 * q.value[Index(k)] * Dot(way, way);
-      block(v, q.column[Index(k)], Diagonal(q.value[Index(k)]));
-    }
+    model_.plates.ForRow(v, [&](std::int32_t column, double value) {
+      const Vector3<double> way = At(y, column) - At(y, v);
+      force += way * value;
+      sum -= 0.25 * value * Dot(way, way);
+      block(v, column, Diagonal(value));
+    });
     addGradient(v, force);
   }
   if (energy) *energy = sum;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "fabric/real4.h"
@@ -84,38 +85,27 @@ BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std:
   return pattern;
 }
 
-std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
-                                                        std::span<const Triangle> triangles) {
-  std::vector<std::array<std::int32_t, 9>> blocks;
-  blocks.reserve(triangles.size());
-  for (const Triangle& t : triangles) {
-    const std::int32_t corners[3] = {t.a, t.b, t.c};
-    std::array<std::int32_t, 9>& of = blocks.emplace_back();
-    for (int k = 0; k < 9; ++k) of[k] = pattern.Find(corners[k / 3], corners[k % 3]);
-  }
-  return blocks;
-}
-
-void AppendRow(ScalarMatrix& matrix, std::vector<std::pair<std::int32_t, double>>& row) {
+void SumByColumn(std::vector<std::pair<std::int32_t, double>>& row) {
   std::stable_sort(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t k = 0; k < row.size(); ++k) {
-    if (k > 0 && row[k].first == row[k - 1].first) {
-      matrix.value.back() += row[k].second;
-    } else {
-      matrix.column.push_back(row[k].first);
-      matrix.value.push_back(row[k].second);
-    }
+  auto end = row.begin();
+  for (auto from = row.begin(); from != row.end(); ++from) {
+    if (end != row.begin() && std::prev(end)->first == from->first)
+      std::prev(end)->second += from->second;
+    else
+      *end++ = *from;
   }
-  matrix.first.push_back(static_cast<std::int32_t>(matrix.column.size()));
+  row.erase(end, row.end());
 }
 
 ScalarMatrix MakeScalarMatrix(int rows, std::span<const ScalarEntry> entries) {
   std::vector<std::vector<std::pair<std::int32_t, double>>> byRow(rows);
   for (const ScalarEntry& entry : entries) byRow[entry.row].push_back({entry.column, entry.value});
-  ScalarMatrix matrix;
-  matrix.first.push_back(0);
-  for (auto& row : byRow) AppendRow(matrix, row);
-  return matrix;
+  RowSharer<double> matrix(rows);
+  for (auto& row : byRow) {
+    SumByColumn(row);
+    matrix.Append(row);
+  }
+  return matrix.Take();
 }
 
 void SystemMatrix::SetUp(BlockPattern pattern, const ScalarMatrix& constant, std::span<const std::uint8_t> pinned) {
@@ -147,28 +137,23 @@ void SystemMatrix::SetUp(const ScalarMatrix& constant, std::span<const std::uint
   constant_.assign(stored, 0);
   blocks_.assign(9 * stored + 1, 0);
   inverse_.assign(9 * static_cast<std::size_t>(n) + 1, 0);
-  restFirst_.reserve(static_cast<std::size_t>(n) + 1);
-  restFirst_.assign(1, 0);
-  restColumn_.clear();
-  restValue_.clear();
-  restColumn_.reserve(constant.column.size());
-  restValue_.reserve(constant.column.size());
-  for (int row = 0; row < n; ++row) {
-    for (std::int32_t k = constant.first[row]; k < constant.first[row + 1]; ++k) {
-      const std::int32_t column = constant.column[k];
-      if (Pinned(row) || Pinned(column)) continue;
-      if (const std::int32_t inside = pattern_.Find(row, column); inside >= 0) {
-        if (column >= row) constant_[storedFirst_[row] + inside - Diagonal(row)] = static_cast<Real>(constant.value[k]);
-      } else {
-        restColumn_.push_back(column);
-        restValue_.push_back(static_cast<Real>(constant.value[k]));
-      }
-    }
-    restFirst_.push_back(static_cast<std::int32_t>(restColumn_.size()));
-  }
   cleared_.shrink_to_fit();
-  restColumn_.shrink_to_fit();
-  restValue_.shrink_to_fit();
+  rest_ = SharedRows<Real>();
+  RowSharer<Real> rest(n);
+  std::vector<std::pair<std::int32_t, Real>> outside;  // what a row has outside the pattern
+  for (int row = 0; row < n; ++row) {
+    outside.clear();
+    constant.ForRow(row, [&](std::int32_t column, double value) {
+      if (Pinned(row) || Pinned(column)) return;
+      if (const std::int32_t inside = pattern_.Find(row, column); inside < 0) {
+        outside.push_back({column, static_cast<Real>(value)});
+      } else if (column >= row) {
+        constant_[storedFirst_[row] + inside - Diagonal(row)] = static_cast<Real>(value);
+      }
+    });
+    rest.Append(outside);
+  }
+  rest_ = rest.Take();
   extra_.any = false;
 }
 
@@ -274,9 +259,10 @@ RowsArgs SystemMatrix::Rows(int chunk, const Real* x, Real* y) const {
           .storedFirst = storedFirst_.data(),
           .mirror = mirror_.data(),
           .blocks = blocks_.data(),
-          .restFirst = restFirst_.data(),
-          .restColumn = restColumn_.data(),
-          .restValue = restValue_.data(),
+          .restKind = rest_.kind.data(),
+          .restFirst = rest_.first.data(),
+          .restOffset = rest_.offset.data(),
+          .restValue = rest_.value.data(),
           .extraBegin = extra_.begin.data(),
           .extraEnd = extra_.end.data(),
           .extraColumn = extra_.column.data(),
@@ -341,10 +327,9 @@ void SystemMatrix::ToDense(double* dense) const {
       for (int c = 0; c < 9; ++c) transposed[c] = block[c % 3 * 3 + c / 3];
       add(column, row, transposed.data());
     }
-    for (std::int32_t k = restFirst_[row]; k < restFirst_[row + 1]; ++k) {
-      for (int r = 0; r < 3; ++r)
-        dense[(3 * row + r) * n + 3 * restColumn_[k] + r] += static_cast<double>(restValue_[k]);
-    }
+    rest_.ForRow(row, [&](std::int32_t column, Real value) {
+      for (int r = 0; r < 3; ++r) dense[(3 * row + r) * n + 3 * column + r] += static_cast<double>(value);
+    });
     for (std::int32_t k = extra_.any ? extra_.begin[row] : 0; extra_.any && k < extra_.end[row]; ++k) {
       add(row, extra_.column[k], &extra_.block[9 * static_cast<std::size_t>(k)]);
     }
@@ -352,10 +337,9 @@ void SystemMatrix::ToDense(double* dense) const {
 }
 
 std::size_t SystemMatrix::MemoryBytes() const {
-  return Bytes(pattern_.first) + Bytes(pattern_.column) + Bytes(restFirst_) + Bytes(restColumn_) + Bytes(restValue_) +
-         Bytes(pinned_) + Bytes(storedFirst_) + Bytes(mirror_) + Bytes(cleared_) + Bytes(constant_) + Bytes(blocks_) +
-         Bytes(inverse_) + Bytes(extra_.begin) + Bytes(extra_.end) + Bytes(extra_.column) + Bytes(extra_.block) +
-         Bytes(extraFirst_) + Bytes(extraOrder_);
+  return Bytes(pattern_.first) + Bytes(pattern_.column) + rest_.MemoryBytes() + Bytes(pinned_) + Bytes(storedFirst_) +
+         Bytes(mirror_) + Bytes(cleared_) + Bytes(constant_) + Bytes(blocks_) + Bytes(inverse_) + Bytes(extra_.begin) +
+         Bytes(extra_.end) + Bytes(extra_.column) + Bytes(extra_.block) + Bytes(extraFirst_) + Bytes(extraOrder_);
 }
 
 }  // namespace percale::fabric

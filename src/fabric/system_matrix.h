@@ -23,6 +23,7 @@
 #include "core/executor.h"
 #include "fabric/kernels.h"
 #include "fabric/real.h"
+#include "fabric/shared_rows.h"
 #include "percale/mesh.h"
 
 namespace percale::fabric {
@@ -42,24 +43,9 @@ struct BlockPattern {
 /// Couples the corners of each triangle, and the ends of each of `morePairs`, over `vertices` of them.
 BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std::span<const Edge> morePairs = {});
 
-/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
-std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const BlockPattern& pattern,
-                                                        std::span<const Triangle> triangles);
-
-/// A sparse matrix of scalars in compressed rows, the columns of each row ascending.
-struct ScalarMatrix {
-  std::vector<std::int32_t> first, column;  ///< As in BlockPattern.
-  std::vector<double> value;
-
-  int rows() const { return static_cast<int>(first.size()) - 1; }
-};
-/// Appends a row of (column, value), in any order; entries of one column add up in the order in which they are given.
-void AppendRow(ScalarMatrix& matrix, std::vector<std::pair<std::int32_t, double>>& row);
-/// The same in memory of others.
-struct ScalarRows {
-  std::span<const std::int32_t> first, column;
-  std::span<const Real> value;
-};
+using ScalarMatrix = SharedRows<double>;
+/// Sorts a row of (column, value) by column; entries of one column add up in the order in which they are given.
+void SumByColumn(std::vector<std::pair<std::int32_t, double>>& row);
 struct ScalarEntry {
   std::int32_t row = 0, column = 0;
   double value = 0;
@@ -97,7 +83,7 @@ class SystemMatrix {
   int rows() const { return pattern_.rows(); }
   const BlockPattern& pattern() const { return pattern_; }
   /// S without rows and columns of pinned vertices and without what lies within the pattern, which Reset puts there.
-  ScalarRows Rest() const { return {restFirst_, restColumn_, restValue_}; }
+  const SharedRows<Real>& Rest() const { return rest_; }
   bool Pinned(int row) const { return !pinned_.empty() && pinned_[row]; }
 
   // In this order for each Newton step:
@@ -161,8 +147,7 @@ class SystemMatrix {
 
   const Kernels* kernels_;
   BlockPattern pattern_;
-  std::vector<std::int32_t> restFirst_, restColumn_;
-  std::vector<Real> restValue_;
+  SharedRows<Real> rest_;
   std::vector<std::uint8_t> pinned_;
   std::vector<std::int32_t> storedFirst_, mirror_;
   std::vector<std::int32_t> cleared_;  // stored blocks in rows and columns of pinned vertices

@@ -91,6 +91,22 @@ struct Matrix3 {
   }
 };
 
+/// Of 3 x 3.
+template <class T>
+struct SymmetricMatrix3 {
+  T xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
+
+  SymmetricMatrix3& operator+=(const SymmetricMatrix3& o) {
+    xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz;
+    return *this;
+  }
+  friend Vector3<T> operator*(const SymmetricMatrix3& a, const Vector3<T>& v) {
+    return {a.xx * v.x + a.xy * v.y + a.xz * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
+            a.xz * v.x + a.yz * v.y + a.zz * v.z};
+  }
+  Matrix3<T> Full() const { return {{xx, xy, xz, xy, yy, yz, xz, yz, zz}}; }
+};
+
 template <class T>
 Matrix3<T> Transposed(const Matrix3<T>& a) {
   return {{a.m[0], a.m[3], a.m[6], a.m[1], a.m[4], a.m[7], a.m[2], a.m[5], a.m[8]}};

@@ -18,7 +18,6 @@ struct ClothModel {
   std::vector<Vec3> start;          ///< Positions at the start [m].
   std::vector<Vec2> uv;             ///< Of a grid (i / (numWidth - 1), j / (numHeight - 1)).
   std::vector<Triangle> triangles;  ///< Of a grid two per quad: A C B and B C D.
-  std::vector<Vec2> material;       ///< Of a cloth of fabric: see RestMesh::material.
 
   int PointCount() const { return static_cast<int>(start.size()); }
 };

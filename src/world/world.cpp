@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "core/executor.h"
@@ -56,27 +58,7 @@ ClothModel MakeModel(const ClothSettings& settings, Engine engine) {
   model.start = std::move(mesh.positions);
   model.uv = std::move(mesh.uv);
   model.triangles = std::move(mesh.triangles);
-  model.material = std::move(mesh.material);
   return model;
-}
-
-/// The springs of a cloth, and their lengths at rest; of one without, the edges of its triangles as the flat fabric
-/// has them. Where the two sides of a seam differ, the first counts.
-void FindSprings(const ClothModel& model, const ClothSettings& settings, Engine engine, std::vector<Edge>& springs,
-                 std::vector<double>& lengths) {
-  if (engine == Engine::Springs) {
-    springs = EnabledSprings(model, settings);
-    lengths = LengthsOf(springs, model.start);
-    return;
-  }
-  Topology topology = BuildTopology(model.start.size(), model.triangles);
-  lengths.assign(topology.edges.size(), 0);
-  for (std::size_t side = 0; side < topology.sideEdges.size(); ++side) {
-    double& length = lengths[static_cast<std::size_t>(topology.sideEdges[side])];
-    const Vec2 &from = model.material[side], &to = model.material[side % 3 == 2 ? side - 2 : side + 1];
-    if (length == 0) length = std::hypot(to.x - from.x, to.y - from.y);
-  }
-  springs = std::move(topology.edges);
 }
 
 /// Of points that were at `previous` a step of `dt` [s] before; `velocities` may be the same as that.
@@ -86,6 +68,55 @@ void ComputeVelocities(std::span<const Vec3> positions, std::span<const Vec3> pr
 }
 
 }  // namespace
+
+/// The springs of a cloth and their lengths at rest, made when any thread first asks for them: for drawing and for
+/// statistics, no step needs them. Of a cloth without, the edges of its triangles as the flat fabric has them; where
+/// the two sides of a seam differ, the first counts.
+class ClothSprings {
+ public:
+  ClothSprings(std::shared_ptr<const Scene> scene, std::size_t cloth) : scene_(std::move(scene)), cloth_(cloth) {}
+
+  std::span<const Edge> edges() const { return Made().edges_; }
+  std::span<const double> lengths() const { return Made().lengths_; }
+
+ private:
+  const ClothSprings& Made() const {
+    const std::lock_guard lock(mutex_);
+    if (scene_) Make(scene_->cloths[cloth_], scene_->simulation.engine);
+    scene_.reset();
+    return *this;
+  }
+  void Make(const ClothSettings& settings, Engine engine) const {
+    if (engine == Engine::Springs) {
+      const ClothModel model = MakeGrid(settings);
+      edges_ = EnabledSprings(model, settings);
+      lengths_ = LengthsOf(edges_, model.start);
+      return;
+    }
+    const RestMesh mesh = MakeClothMesh(settings);
+    Topology topology = BuildTopology(mesh.positions.size(), mesh.triangles);
+    lengths_.assign(topology.edges.size(), 0);
+    for (std::size_t side = 0; side < topology.sideEdges.size(); ++side) {
+      double& length = lengths_[static_cast<std::size_t>(topology.sideEdges[side])];
+      const Vec2 &from = mesh.material[side], &to = mesh.material[side % 3 == 2 ? side - 2 : side + 1];
+      if (length == 0) length = std::hypot(to.x - from.x, to.y - from.y);
+    }
+    edges_ = std::move(topology.edges);
+  }
+
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const Scene> scene_;  // until they are made
+  std::size_t cloth_;
+  mutable std::vector<Edge> edges_;
+  mutable std::vector<double> lengths_;
+};
+
+std::span<const Edge> ClothView::springs() const {
+  return springs_->edges();
+}
+std::span<const double> ClothView::restLengths() const {
+  return springs_->lengths();
+}
 
 struct World::Impl {
   Impl(Scene s, WorldOptions options) : executor(options.threads), scene(std::make_shared<const Scene>(std::move(s))) {
@@ -102,8 +133,7 @@ struct World::Impl {
 
   struct Cloth {
     ClothModel model;
-    std::vector<Edge> springs;         // of the enabled kinds
-    std::vector<double> restLengths;   // of these
+    std::unique_ptr<const ClothSprings> springs;
     std::vector<std::int32_t> pinned;  // ascending
     std::vector<Vec3> positions, previous, velocities;
     std::vector<Vec3> forces;  // of this step, where the program has any
@@ -130,9 +160,8 @@ void World::Impl::Build() {
   cloths.clear();
   for (std::size_t c = 0; c < models.size(); ++c) {
     Cloth& cloth = cloths.emplace_back();
-    FindSprings(models[c], scene->cloths[c], scene->simulation.engine, cloth.springs, cloth.restLengths);
+    cloth.springs = std::make_unique<const ClothSprings>(scene, c);
     cloth.pinned = PinnedVertices(scene->cloths[c]);
-    models[c].material = std::vector<Vec2>();  // unlike `= {}` that gives the memory back
   }
   engine = &FindEngine(scene->simulation.engine);
   engineState = engine->create(*scene, models, executor);
@@ -145,8 +174,7 @@ void World::Impl::Configure(std::shared_ptr<const Scene> changed) {
   scene = std::move(changed);
   engine->configure(engineState.get(), *scene);
   for (std::size_t c = 0; c < cloths.size(); ++c) {
-    if (scene->simulation.engine == Engine::Springs)
-      FindSprings(cloths[c].model, scene->cloths[c], Engine::Springs, cloths[c].springs, cloths[c].restLengths);
+    if (scene->simulation.engine == Engine::Springs) cloths[c].springs = std::make_unique<const ClothSprings>(scene, c);
     cloths[c].pinned = PinnedVertices(scene->cloths[c]);
   }
 }
@@ -440,8 +468,7 @@ ClothView World::Cloth(int index) const {
   view.velocities_ = cloth.velocities;
   view.uv_ = cloth.model.uv;
   view.triangles_ = cloth.model.triangles;
-  view.springs_ = cloth.springs;
-  view.lengths_ = cloth.restLengths;
+  view.springs_ = cloth.springs.get();
   view.pinned_ = cloth.pinned;
   return view;
 }

@@ -1,6 +1,7 @@
 // Every kernel of every instruction set against the plain functions it stands for, and against each other to the bit.
 
 #include "fabric/kernels.h"
+#include "fabric/block_parts.h"
 
 #include <doctest/doctest.h>
 
@@ -198,6 +199,7 @@ TEST_CASE("the wind's kernel agrees with the load of each triangle") {
                           .h = h,
                           .air = air,
                           .wind = {1, -2, 3},
+                          .outFirst = 0,
                           .load = loads.data()});
       CHECK(loads.back().force == Vec3{});
       for (std::size_t t = 0; t < s.triangles.size(); ++t) {
@@ -210,13 +212,13 @@ TEST_CASE("the wind's kernel agrees with the load of each triangle") {
         const Vec3 off = loads[t].force - ToVec3(load.drag * load.wind + load.lift) / 3;
         CHECK(Dot(off, off) < 1e-20 * (1 + Dot(loads[t].force, loads[t].force)));
         for (std::size_t k = 0; k < 9; ++k) {
-          CHECK(loads[t].stiffness.m[k] == doctest::Approx(load.drag.m[k] / (3 * h)).epsilon(1e-10));
+          CHECK(loads[t].stiffness.Full().m[k] == doctest::Approx(load.drag.m[k] / (3 * h)).epsilon(1e-10));
         }
       }
       if (first.empty()) first = loads;
       for (std::size_t t = 0; t < loads.size(); ++t) {
         CHECK(loads[t].force == first[t].force);
-        for (std::size_t k = 0; k < 9; ++k) CHECK(loads[t].stiffness.m[k] == first[t].stiffness.m[k]);
+        for (std::size_t k = 0; k < 9; ++k) CHECK(loads[t].stiffness.Full().m[k] == first[t].stiffness.Full().m[k]);
       }
     }
   }
@@ -239,8 +241,9 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
     std::vector<Vec3> force(x.size(), {7, 7, 7});
     const double sum = kernels->plateForces({.begin = 3,
                                              .end = sheet.vertices(),
+                                             .kind = matrix.kind.data(),
                                              .first = matrix.first.data(),
-                                             .column = matrix.column.data(),
+                                             .offset = matrix.offset.data(),
                                              .value = matrix.value.data(),
                                              .isPlate = isPlate.data(),
                                              .x = x.data(),
@@ -252,11 +255,11 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
         continue;
       }
       Vec3 expected;
-      for (std::int32_t k = matrix.first[v]; k < matrix.first[v + 1]; ++k) {
-        const Vec3 way = x[Index(matrix.column[Index(k)])] - x[v];
-        expected += way * matrix.value[Index(k)];
-        expectedSum += matrix.value[Index(k)] * Dot(way, way);
-      }
+      matrix.ForRow(static_cast<std::int32_t>(v), [&](std::int32_t column, double value) {
+        const Vec3 way = x[Index(column)] - x[v];
+        expected += way * value;
+        expectedSum += value * Dot(way, way);
+      });
       CHECK(Length(force[v] - expected) <= 1e-12 * (1 + Length(expected)));
     }
     CHECK(sum == doctest::Approx(expectedSum));
@@ -269,16 +272,17 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
 TEST_CASE("the matrix is the sum of the triangles' blocks") {
   const test::Sheet sheet = test::Disc(4);
   const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);
-  const auto blocksOf = TriangleBlocks(pattern, sheet.triangles);
+  const auto blocksOf = test::TriangleBlocks(pattern, sheet.triangles);
   const std::size_t blocks = Index(pattern.blocks()), parts = 3 * sheet.triangles.size();
-  Lists same = ListBy(pattern.blocks(), parts, [&](std::size_t e) { return blocksOf[e / 3][e % 3 * 3 + (e + 1) % 3]; });
-  Lists transposed =
-      ListBy(pattern.blocks(), parts, [&](std::size_t e) { return blocksOf[e / 3][(e + 1) % 3 * 3 + e % 3]; });
-  for (Lists* lists : {&same, &transposed}) {
-    for (std::int32_t& e : lists->entry) e = e / 3 * kHessianReals + e % 3 * 9;
-  }
+  const Lists corners = ListBy(sheet.vertices(), parts, [&](std::size_t e) {
+    const Triangle& t = sheet.triangles[e / 3];
+    return e % 3 == 0 ? t.a : e % 3 == 1 ? t.b : t.c;
+  });
+  const Slots codes = FindBlockParts(pattern, sheet.triangles, corners);
+  std::vector<std::uint32_t> wideCodes;
+  codes.InArray([&](const auto* code) { wideCodes.assign(code, code + codes.size()); });
   SplitMix64 random(3);
-  RealVector hessian(kHessianReals * sheet.triangles.size(), 0);
+  RealVector hessian(kHessianReals * sheet.triangles.size() + 1, 0);
   for (Real& entry : hessian) entry = static_cast<Real>(2 * random.NextUnit() - 1);
   // Stored are the blocks on and right of the diagonal.
   std::vector<std::int32_t> storedFirst{0};
@@ -316,10 +320,12 @@ TEST_CASE("the matrix is the sum of the triangles' blocks") {
                          .column = pattern.column.data(),
                          .storedFirst = storedFirst.data(),
                          .constant = constant.data(),
-                         .sameFirst = same.first.data(),
-                         .same = same.entry.data(),
-                         .transposedFirst = transposed.first.data(),
-                         .transposed = transposed.entry.data(),
+                         .cornerFirst = corners.first.data(),
+                         .corner = corners.entry.data(),
+                         .parts = begin == 0 ? codes.narrow() : nullptr,
+                         .wideParts = begin == 0 ? nullptr : wideCodes.data(),
+                         .cornersBegin = 0,
+                         .corners = 3 * static_cast<std::int32_t>(sheet.triangles.size()),
                          .hessian = hessian.data(),
                          .blocks = filled.data()});
     }

@@ -4,7 +4,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/executor.h"
@@ -13,6 +16,7 @@
 #include "fabric/multigrid.h"
 #include "fabric/prolongation.h"
 #include "fabric/system_matrix.h"
+#include "math/splitmix64.h"
 #include "tests/fabric/decompositions.h"
 #include "tests/fabric/sheet.h"
 #include "tests/sanitized.h"
@@ -55,8 +59,7 @@ Dense ToEigen(const Prolongation& p) {
 /// What the matrix of a sheet has to be, from its parts.
 Dense Expected(const Sheet& sheet, const Cloth& cloth, std::span<const ExtraTerm> extra) {
   SystemMatrix membrane;
-  ScalarMatrix nothing;
-  nothing.first.assign(sheet.rest.size() + 1, 0);
+  const ScalarMatrix nothing = MakeScalarMatrix(sheet.vertices(), {});
   membrane.SetUp(MakePattern(sheet.vertices(), sheet.triangles), nothing);
   membrane.Reset(Serial());
   AddMembrane(sheet, cloth, membrane);
@@ -68,9 +71,9 @@ Dense Expected(const Sheet& sheet, const Cloth& cloth, std::span<const ExtraTerm
   };
   const ScalarMatrix constant = ConstantPart(sheet, cloth);
   for (int row = 0; row < constant.rows(); ++row) {
-    for (int k = constant.first[row]; k < constant.first[row + 1]; ++k) {
-      for (int r = 0; r < 3; ++r) dense(3 * row + r, 3 * constant.column[k] + r) += constant.value[k];
-    }
+    constant.ForRow(row, [&](std::int32_t column, double value) {
+      for (int r = 0; r < 3; ++r) dense(3 * row + r, 3 * column + r) += value;
+    });
   }
   for (const ExtraTerm& e : extra) {
     for (int i = 0; i < 4; ++i) {
@@ -198,12 +201,38 @@ TEST_CASE("extra blocks can change from one filling to the next") {
   }
 }
 
+TEST_CASE("shared rows are those that were given, each kind once") {
+  SplitMix64 random(5);
+  const int rows = 3000;  // more kinds than the first hash table has room for
+  std::vector<std::vector<std::pair<std::int32_t, double>>> given;
+  RowSharer<double> sharer(rows);
+  std::set<std::vector<std::pair<std::int32_t, double>>> kinds;  // beside the diagonal
+  for (int row = 0; row < rows; ++row) {
+    auto& entries = given.emplace_back();
+    auto beside = entries;
+    for (int column = row; column < row + 4; ++column) {
+      if (random.NextUnit() < 0.3) continue;
+      entries.push_back({column, std::floor(4 * random.NextUnit())});
+      beside.push_back({column - row, entries.back().second});
+    }
+    kinds.insert(beside);
+    sharer.Append(entries);
+  }
+  const ScalarMatrix matrix = sharer.Take();
+  CHECK(matrix.rows() == rows);
+  CHECK(matrix.first.size() == kinds.size() + 1);
+  for (int row = 0; row < rows; ++row) {
+    std::vector<std::pair<std::int32_t, double>> read;
+    matrix.ForRow(row, [&](std::int32_t column, double value) { read.push_back({column, value}); });
+    CHECK(read == given[static_cast<std::size_t>(row)]);
+  }
+}
+
 TEST_CASE("where a diagonal block is not positive definite, its trace is inverted") {
   const Sheet sheet = Square(9);
   const auto inverseOf = [&](std::array<Real, 3> diagonal) {
     SystemMatrix matrix;
-    ScalarMatrix nothing;
-    nothing.first.assign(sheet.rest.size() + 1, 0);
+    const ScalarMatrix nothing = MakeScalarMatrix(sheet.vertices(), {});
     matrix.SetUp(MakePattern(sheet.vertices(), sheet.triangles), nothing);
     matrix.Reset(Serial());
     Real* block = matrix.DiagonalBlock(40);

@@ -3,9 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "fabric/system_matrix.h"
+#include "fabric/triangle_window.h"
 #include "math/splitmix64.h"
 #include "mesh/rest_mesh.h"
 #include "percale/fabrics.h"
@@ -36,9 +38,10 @@ struct Sheet {
     for (const Vec3& x : model.start) {
       y.push_back(x + noise() * 0.02);
       start.push_back(x + noise() * 0.02);
-      predicted.push_back(x + noise() * 0.02);
+      before.push_back(x + noise() * 0.02);
       VertexLoad load;
-      load.stiffness = Diagonal(1.0 + random.NextUnit());
+      const double stiffness = 1.0 + random.NextUnit();
+      load.stiffness = {.xx = stiffness, .yy = stiffness, .zz = stiffness};
       load.force = noise();
       loads.push_back(load);
     }
@@ -51,7 +54,7 @@ struct Sheet {
   SplitMix64 random{7};
   Scene scene;
   FabricModel model;
-  std::vector<Vec3> y, start, predicted;
+  std::vector<Vec3> y, start, before;
   std::vector<VertexLoad> loads;
   std::vector<std::uint8_t> free;
   Executor executor{1};
@@ -70,7 +73,7 @@ TEST_CASE("the gradient is the derivative of the energy, term by term and all to
     for (const MembraneLaw membrane : {MembraneLaw::StVenantKirchhoff, MembraneLaw::NeoHookean}) {
       Sheet s(bending, membrane);
       Objective objective(s.model, s.pattern, s.executor);
-      objective.Begin({1.0 / 60, s.start, s.predicted, s.loads, s.free});
+      objective.Begin({1.0 / 60, s.start, s.before, {0, -0.003, 0}, s.loads, s.free});
       std::vector<Vec3> gradient(s.y.size()), again(s.y.size());
       objective.Gradient(s.y, gradient);
       objective.GradientAndTangent(s.y, again, s.matrix);
@@ -118,4 +121,33 @@ TEST_CASE("a small bend costs the same far from the origin") {
   CHECK(objective.ElasticEnergy(y) == doctest::Approx(near).epsilon(1e-3));
   CHECK(near ==
         doctest::Approx(0.5 * cloth.bendWarp * kCurvature * kCurvature * cloth.width * cloth.height).epsilon(0.05));
+}
+
+TEST_CASE("vertices find all that is evaluated of their triangles, in less room than all take") {
+  Scene scene;
+  ClothSettings& cloth = scene.cloths.emplace_back();
+  cloth.numWidthPoints = 150, cloth.numHeightPoints = 300;
+  const std::vector<RestMesh> meshes = {MakeGridMesh(cloth)};
+  const FabricModel model = BuildModel(scene, meshes);
+  const TriangleWindow window(model);
+  REQUIRE(2 * window.live() < static_cast<int>(model.triangles.size()));
+  std::vector<int> evaluated(static_cast<std::size_t>(window.live()), -1);  // which triangle lies there
+  int next = 0, wrong = 0;
+  window.ForRows(
+      Executor(1),
+      [&](int begin, int end) {
+        for (int t = begin; t < end; ++t) evaluated[static_cast<std::size_t>(window.Place(begin) + t - begin)] = t;
+      },
+      [&](int begin, int end, const LiveTriangles& live) {
+        CHECK(begin == std::exchange(next, end));
+        for (int v = begin; v < end; ++v) {
+          for (int e = model.corners.first[static_cast<std::size_t>(v)];
+               e < model.corners.first[static_cast<std::size_t>(v) + 1]; ++e) {
+            const std::int32_t corner = model.corners.entry[static_cast<std::size_t>(e)], place = live.Place(corner);
+            if (place % 3 != corner % 3 || evaluated[static_cast<std::size_t>(place / 3)] != corner / 3) ++wrong;
+          }
+        }
+      });
+  CHECK(next == model.vertexCount);
+  CHECK(wrong == 0);
 }

@@ -128,6 +128,18 @@ inline std::vector<double> VertexAreas(const Sheet& sheet) {
   return areas;
 }
 
+/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
+inline std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const fabric::BlockPattern& pattern,
+                                                               std::span<const Triangle> triangles) {
+  std::vector<std::array<std::int32_t, 9>> blocks;
+  for (const Triangle& t : triangles) {
+    const std::int32_t corners[3] = {t.a, t.b, t.c};
+    std::array<std::int32_t, 9>& of = blocks.emplace_back();
+    for (std::size_t k = 0; k < 9; ++k) of[k] = pattern.Find(corners[k / 3], corners[k % 3]);
+  }
+  return blocks;
+}
+
 /// Masses over h^2, and bending as the square of the Laplacian.
 inline fabric::ScalarMatrix ConstantPart(const Sheet& sheet, const Cloth& cloth) {
   const std::vector<double> areas = VertexAreas(sheet);
@@ -145,11 +157,11 @@ inline fabric::ScalarMatrix ConstantPart(const Sheet& sheet, const Cloth& cloth)
   std::vector<fabric::ScalarEntry> entries;
   for (int v = 0; v < sheet.vertices(); ++v) {
     entries.push_back({v, v, cloth.density * areas[v] / (cloth.timeStep * cloth.timeStep)});
-    for (int k = L.first[v]; k < L.first[v + 1]; ++k) {
-      for (int l = L.first[v]; l < L.first[v + 1]; ++l) {
-        entries.push_back({L.column[k], L.column[l], cloth.bending * L.value[k] * L.value[l] / areas[v]});
-      }
-    }
+    L.ForRow(v, [&](std::int32_t row, double a) {
+      L.ForRow(v, [&](std::int32_t column, double b) {
+        entries.push_back({row, column, cloth.bending * a * b / areas[v]});
+      });
+    });
   }
   return fabric::MakeScalarMatrix(sheet.vertices(), entries);
 }
