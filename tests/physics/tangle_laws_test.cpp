@@ -165,6 +165,18 @@ TEST_CASE("sheets all through each other come apart") {
   }
 }
 
+TEST_CASE("thin cloth that is pierced far from all edges and vertices is seen at the start") {
+  Scene scene = FabricScene();
+  scene.simulation.gravity = {};
+  scene.cloths = {Sheet(1, 20), Standing(0.5, 10, {0.235, 0.77, 0.452}, {7, 11, 13})};
+  for (ClothSettings& cloth : scene.cloths) cloth.contactDistance = 0.0001;
+  World world(scene, {.threads = 1});
+  const std::int64_t start = ClothJudge(world, 1).Count(world).count;
+  CHECK(start > 0);
+  world.Step();
+  CHECK(world.report().intersections > 0);
+}
+
 TEST_CASE("what is tangled comes apart to the same bits for any number of threads, and from a state in between") {
   std::vector<std::uint64_t> hashes;
   WorldState middle;
