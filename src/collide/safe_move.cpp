@@ -156,7 +156,10 @@ std::int64_t SafeMove::Cut(const Ways& ways, const ContactDistances& distances, 
 bool SafeMove::LimitWays(const Ways& ways, const ContactDistances& distances) {
   double longest = 0, distance = 0;
   for (std::size_t v = 0; v < ways.way.size(); ++v) longest = std::max(longest, Length(ways.way[v]) * ways.share[v]);
-  for (const double half : distances.half) distance = std::max(distance, 2 * half);
+  for (std::size_t body = 0; body < distances.half.size(); ++body) {
+    const auto number = static_cast<std::int32_t>(body);
+    distance = std::max(distance, 2 * distances.half[body] - distances.CoreOf(number, number));
+  }
   const double most = kLongest * distance;
   if (longest <= most) return false;
   limited_.resize(ways.way.size());
