@@ -84,9 +84,9 @@ class RowSharer {
 
   bool Alike(std::int32_t a, std::int32_t b) const {
     const std::size_t size = Size(a);
-    return size == Size(b) &&
-           std::memcmp(&rows_.offset[0] + Begin(a), &rows_.offset[0] + Begin(b), size * sizeof(std::int32_t)) == 0 &&
-           std::memcmp(&rows_.value[0] + Begin(a), &rows_.value[0] + Begin(b), size * sizeof(T)) == 0;
+    if (size == 0 || size != Size(b)) return size == Size(b);
+    return std::memcmp(&rows_.offset[Begin(a)], &rows_.offset[Begin(b)], size * sizeof(std::int32_t)) == 0 &&
+           std::memcmp(&rows_.value[Begin(a)], &rows_.value[Begin(b)], size * sizeof(T)) == 0;
   }
 
   /// Where in the hash table a kind that is alike is, or would be: linear probing (Knuth, TAOCP 3, section 6.4).
