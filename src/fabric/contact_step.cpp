@@ -326,15 +326,18 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
   listed_ = false;  // A list says which pairs are let be.
 }
 
-/// Whether at start_ nothing surely meets, since no two things without a vertex in common come near: where an edge runs
-/// through a triangle, it is within the radius of the largest circle in the triangle of a side, and so within 0.289 of
-/// the longest side. (With one vertex in common it ends on the triangle, or crosses the side opposite.)
+/// Whether it is seen soon that at start_ nothing meets, since no two things without a vertex in common come near:
+/// where an edge runs through a triangle, it is within the radius of the largest circle in the triangle of a side, and
+/// so within 0.289 of the longest side. (With one vertex in common it ends on the triangle, or crosses the side
+/// opposite.)
 bool ContactStep::NothingIsNear() {
   double longest = 0;
   for (const Edge& edge : mesh_.edges)
     longest = std::max(longest, Length(start_[Index(edge.a)] - start_[Index(edge.b)]));
+  const double least = 0.15 * longest;
+  if (least > distance_) return false;  // too much would be near
   ContactDistances reach = distances_;
-  for (double& half : reach.half) half = std::max(half, 0.15 * longest);
+  for (double& half : reach.half) half = std::max(half, least);
   std::fill(way_.begin(), way_.end(), Vec3{});
   safeMove_.List(start_, way_, reach);
   return safeMove_.vertexTriangle().size() == 0 && safeMove_.edgeEdge().size() == 0;
