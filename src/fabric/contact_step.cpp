@@ -305,7 +305,7 @@ void ContactStep::Judge(std::span<const Vec3> cloth) {
   std::copy(cloth.begin(), cloth.end(), start_.begin());
   std::copy(obstacle_.begin(), obstacle_.end(), start_.begin() + static_cast<std::ptrdiff_t>(cloth.size()));
   std::vector<Intersection> met;
-  if ((distances_.clothPairs || !obstacle_.empty()) && !NothingIsNear()) {
+  if ((distances_.clothPairs || !obstacle_.empty()) && (judge_ || !NothingIsNear())) {
     if (!judge_) judge_.emplace(mesh_.vertices(), mesh_.triangles, mesh_.clothVertices);
     met = judge_->Count(start_, executor_, kMostTangled).first;
   }
