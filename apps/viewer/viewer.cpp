@@ -120,6 +120,8 @@ class Viewer {
       }
       DrawPicture();
       --picturesDue;
+      // What takes some pictures is brought to its end, however slowly they come.
+      if (state_.keyboardMoves > 0 || !state_.jump.empty()) picturesDue = kActivePictures;
     }
     KeepSettings();
     // A large cloth may need a while to finish its frame: the window need not stay for that.
