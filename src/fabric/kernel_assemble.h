@@ -41,11 +41,14 @@ template <class Code>
 void AssembleBy(const AssembleArgs& a, const Code* codes) {
   for (int row = a.begin; row < a.end; ++row) {
     Columns sum;
-    std::int32_t next = a.storedFirst[row] + 1;
+    Real* const stored = a.blocks + 9 * static_cast<std::int64_t>(a.storedFirst[row]);
+    Real* next = stored + 9;
+    const Real* constant = a.constant.value + a.constant.first[a.constant.kind[row]];
     const std::int32_t* const corners = a.corner + a.cornerFirst[row];
     const Code* code = codes + 2 * static_cast<std::int64_t>(a.cornerFirst[row]);
-    for (std::int32_t k = a.first[row]; k < a.first[row + 1]; ++k) {
-      if (a.column[k] == row) continue;
+    const std::int32_t columns = a.columns.kind[row];
+    for (std::int32_t k = a.columns.first[columns]; k < a.columns.first[columns + 1]; ++k) {
+      if (a.columns.offset[k] == 0) continue;
       Columns block;
       for (bool last = false; !last; ++code) {
         last = (*code & 1) != 0;
@@ -59,13 +62,12 @@ void AssembleBy(const AssembleArgs& a, const Code* codes) {
           block += Transposed(LoadColumns(from == 1 ? own - 9 : own + 18));
       }
       sum += block;
-      if (a.column[k] < row) continue;
-      StoreBlock(block, a.constant[next], a.blocks + 9 * static_cast<std::int64_t>(next));
-      ++next;
+      if (a.columns.offset[k] < 0) continue;
+      StoreBlock(block, *constant++, next);
+      next += 9;
     }
     for (Floats4& c : sum.c) c = -c;
-    const std::int32_t diagonal = a.storedFirst[row];
-    StoreBlock(sum, a.constant[diagonal], a.blocks + 9 * static_cast<std::int64_t>(diagonal));
+    StoreBlock(sum, a.diagonal[row], stored);
   }
 }
 

@@ -64,27 +64,29 @@ template <class Store>
 inline void ForRows(const RowsArgs& a, Store&& store) {
   for (int row = a.begin; row < a.end; ++row) {
     BlockSum sum;
-    const std::int32_t diagonal = a.first[row + 1] - (a.storedFirst[row + 1] - a.storedFirst[row]);
-    const std::int32_t* mirror = a.mirror + (a.first[row] - a.storedFirst[row]);
-    for (std::int32_t k = a.first[row]; k < diagonal; ++k) {
-      sum.AddTransposed(a.blocks + 9 * static_cast<std::int64_t>(*mirror++),
-                        a.x + 3 * static_cast<std::int64_t>(a.column[k]));
+    const Real* const at = a.x + 3 * static_cast<std::int64_t>(row);
+    const std::int32_t columns = a.columns.kind[row];
+    std::int32_t k = a.columns.first[columns];
+    for (; a.columns.offset[k] < 0; ++k) {
+      const std::int32_t block = a.storedFirst[row + a.columns.offset[k]] + a.columns.value[k];
+      sum.AddTransposed(a.blocks + 9 * static_cast<std::int64_t>(block),
+                        at + 3 * static_cast<std::int64_t>(a.columns.offset[k]));
     }
     const Real* block = a.blocks + 9 * static_cast<std::int64_t>(a.storedFirst[row]);
-    for (std::int32_t k = diagonal; k < a.first[row + 1]; ++k, block += 9) {
-      sum.Add(block, a.x + 3 * static_cast<std::int64_t>(a.column[k]));
+    for (; k < a.columns.first[columns + 1]; ++k, block += 9) {
+      sum.Add(block, at + 3 * static_cast<std::int64_t>(a.columns.offset[k]));
     }
     if (a.extraBlocks) {
-      for (std::int32_t k = a.extraBegin[row]; k < a.extraEnd[row]; ++k) {
-        sum.Add(a.extraBlocks + 9 * static_cast<std::int64_t>(k),
-                a.x + 3 * static_cast<std::int64_t>(a.extraColumn[k]));
+      for (std::int32_t e = a.extraBegin[row]; e < a.extraEnd[row]; ++e) {
+        sum.Add(a.extraBlocks + 9 * static_cast<std::int64_t>(e),
+                a.x + 3 * static_cast<std::int64_t>(a.extraColumn[e]));
       }
     }
     Floats4 rest;
-    const std::int32_t kind = a.restKind[row];
-    const Real* const at = a.x + 3 * static_cast<std::int64_t>(row);
-    for (std::int32_t k = a.restFirst[kind]; k < a.restFirst[kind + 1]; ++k) {
-      rest += Floats4::Load(at + 3 * static_cast<std::int64_t>(a.restOffset[k])) * Floats4(a.restValue[k]);
+    const std::int32_t constant = a.constant.kind[row];
+    const std::int32_t inside = a.storedFirst[row + 1] - a.storedFirst[row] - 1;
+    for (std::int32_t e = a.constant.first[constant] + inside; e < a.constant.first[constant + 1]; ++e) {
+      rest += Floats4::Load(at + 3 * static_cast<std::int64_t>(a.constant.offset[e])) * Floats4(a.constant.value[e]);
     }
     store(row, sum.Total() + rest);
   }

@@ -10,6 +10,7 @@
 #include "fabric/energy/air.h"
 #include "fabric/energy/membrane.h"
 #include "fabric/real.h"
+#include "fabric/shared_rows.h"
 #include "math/vector3.h"
 #include "percale/mesh.h"
 #include "percale/scene.h"
@@ -78,10 +79,11 @@ struct PlateArgs {
 /// Some rows of the matrix. Arrays are from the first row or block of all on.
 struct AssembleArgs {
   int begin, end;
-  const std::int32_t* first;        ///< As in BlockPattern.
-  const std::int32_t* column;       ///< As in BlockPattern.
-  const std::int32_t* storedFirst;  ///< As SystemMatrix has it: blocks left of the diagonal are not stored.
-  const Real* constant;             ///< Per stored block the scalar that stands on its diagonal besides.
+  SharedRowsView<std::int32_t> columns;  ///< As BlockPattern has them ...
+  const std::int32_t* storedFirst;       ///< ... and this.
+  // As SystemMatrix has them, scalars that stand on the diagonals of blocks besides:
+  const Real* diagonal;             ///< Per row, of its block on the diagonal.
+  SharedRowsView<Real> constant;    ///< Of the other stored blocks of each row, first of all.
   const std::int32_t* cornerFirst;  ///< The corners of row v are [cornerFirst[v], cornerFirst[v + 1]) of ...
   const std::int32_t* corner;       ///< ... these: 3 * triangle + 0, 1, 2.
   // Codes of BlockPart, of either type; the other is null.
@@ -95,15 +97,10 @@ struct AssembleArgs {
 /// Some rows of a SystemMatrix and vectors over all rows. Arrays are from the first row or block of all on.
 struct RowsArgs {
   int begin, end;
-  const std::int32_t* first;   ///< As in BlockPattern.
-  const std::int32_t* column;  ///< As in BlockPattern.
-  const std::int32_t* storedFirst;
-  const std::int32_t* mirror;  ///< As SystemMatrix has them.
-  const Real* blocks;          ///< Nine per stored block, column by column; one more can be read at the end.
-  const std::int32_t* restKind;
-  const std::int32_t* restFirst;
-  const std::int32_t* restOffset;
-  const Real* restValue;  ///< Scalars outside the pattern, as SharedRows has them.
+  SharedRowsView<std::int32_t> columns;  ///< As BlockPattern has them ...
+  const std::int32_t* storedFirst;       ///< ... and this.
+  const Real* blocks;                    ///< Nine per stored block, column by column; one more can be read at the end.
+  SharedRowsView<Real> constant;  ///< As SystemMatrix has them: scalars outside the pattern come last in each row.
   const std::int32_t* extraBegin;
   const std::int32_t* extraEnd;
   const std::int32_t* extraColumn;

@@ -30,21 +30,19 @@ std::size_t Bytes(const std::vector<T, Allocator>& array) {
 /// A coarse level and the way to it.
 struct Multigrid::Level {
   Prolongation p;
-  std::vector<std::int32_t> rowFirst, row;  // P': per node its fine rows ...
-  std::vector<Real> rowWeight;              // ... and their weights
+  Restriction restriction;
 
   // The blocks of T = H P lie in compressed rows, those of each chunk of kProductChunk rows from a place on that other
   // chunks have before and after it.
   std::vector<std::int32_t> productFirst;
   std::size_t chunkBlocks = 0;  // in the longest chunk
   Window window;                // of chunks of T, for kNodeSlab nodes each
-  // In the order of the loops: for each block of H and each weight of its column where in its row of T it goes.
-  Slots productSlot;
-  std::vector<std::int32_t> productSlotFirst;  // per chunk of kProductChunk rows: its first slot
-  // For each weight of P' how many blocks at the start of that row of T are left of the diagonal of A, and then for
-  // each block that is not where in its row of A it goes; per node, where the latter start.
-  Slots skip, slot;
-  std::vector<std::int32_t> slotFirst;
+  // Per row, in the order of the loops: for each block of H and each weight of its column where in its row of T it
+  // goes.
+  SlotLists productSlots;
+  // Per node, likewise: for each weight of P' how many blocks at the start of that row of T are left of the diagonal of
+  // A, and then for each other block where in its row of A it goes.
+  SlotLists slots;
 
   SystemMatrix matrix;
   RealVector right, solution, scratch;  // vectors over its nodes
@@ -87,26 +85,24 @@ const Prolongation& Multigrid::prolongation(int level) const {
 
 namespace {
 
-/// P' S P, node by node. `rowFirst`, `row`, `rowWeight`: P' in compressed rows.
-ScalarMatrix CoarseScalars(const SharedRows<Real>& fine, const Prolongation& p,
-                           const std::vector<std::int32_t>& rowFirst, const std::vector<std::int32_t>& rowOf,
-                           const std::vector<Real>& rowWeight) {
+/// P' S P of what S has outside the pattern of the finer level, node by node.
+ScalarMatrix CoarseScalars(const SystemMatrix& fine, const Prolongation& p, const Restriction& restriction) {
   RowSharer<double> coarse(p.nodes);
   std::vector<std::pair<std::int32_t, double>> entries;  // of a row
   std::vector<double> sum(p.nodes, 0);
   std::vector<std::int32_t> seenBy(p.nodes, -1), columns;
   for (int node = 0; node < p.nodes; ++node) {
     columns.clear();
-    for (std::int32_t e = rowFirst[node]; e < rowFirst[node + 1]; ++e) {
-      fine.ForRow(rowOf[e], [&](std::int32_t other, Real entry) {
-        const double value = static_cast<double>(rowWeight[e]) * static_cast<double>(entry);
+    restriction.ForRow(p, node, [&](std::int32_t row, Real weight) {
+      fine.ForRest(row, [&](std::int32_t other, Real entry) {
+        const double value = static_cast<double>(weight) * static_cast<double>(entry);
         for (std::int32_t f = p.first[other]; f < p.first[other + 1]; ++f) {
           const std::int32_t column = p.column[f];
           if (std::exchange(seenBy[column], node) != node) columns.push_back(column), sum[column] = 0;
           sum[column] += value * static_cast<double>(p.weight[f]);
         }
       });
-    }
+    });
     std::sort(columns.begin(), columns.end());
     entries.clear();
     for (const std::int32_t column : columns) entries.push_back({column, sum[column]});
@@ -130,45 +126,34 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
     const Prolongation& P = level.p;
     const BlockPattern& pattern = above->pattern();
     assert(P.rows() == pattern.rows());
-    level.rowFirst.assign(P.nodes + 1, 0);
-    for (const std::int32_t node : P.column) ++level.rowFirst[node + 1];
-    for (int node = 0; node < P.nodes; ++node) level.rowFirst[node + 1] += level.rowFirst[node];
-    level.row.resize(P.column.size());
-    level.rowWeight.resize(P.column.size());
-    std::vector<std::int32_t> next(level.rowFirst.begin(), level.rowFirst.end() - 1);
-    for (int row = 0; row < P.rows(); ++row) {
-      for (std::int32_t e = P.first[row]; e < P.first[row + 1]; ++e) {
-        const std::int32_t at = next[P.column[e]]++;
-        level.row[at] = row;
-        level.rowWeight[at] = P.weight[e];
-      }
-    }
-
-    level.matrix.SetUp(CoarsePattern(pattern, P),
-                       CoarseScalars(above->Rest(), P, level.rowFirst, level.row, level.rowWeight));
+    level.restriction = MakeRestriction(P);
+    level.matrix.SetUp(CoarsePattern(pattern, P), CoarseScalars(*above, P, level.restriction));
     const BlockPattern& coarse = level.matrix.pattern();
 
     // Rows of T: the nodes of all columns, ascending. Only those of rows that P' reads.
     std::vector<std::int32_t> nodes, productColumn;
+    std::vector<std::uint32_t> slots;
     level.productFirst.reserve(static_cast<std::size_t>(P.rows()) + 1);
     level.productFirst.assign(1, 0);
     for (int row = 0; row < P.rows(); ++row) {
-      if (row % kProductChunk == 0) level.productSlotFirst.push_back(level.productSlot.size());
       nodes.clear();
+      slots.clear();
       const bool read = P.first[row] < P.first[row + 1];
-      for (std::int32_t k = pattern.first[row]; read && k < pattern.first[row + 1]; ++k) {
-        const std::int32_t other = pattern.column[k];
+      const auto forColumns = [&](auto&& visit) {
+        if (read) pattern.columns.ForRow(row, visit);
+      };
+      forColumns([&](std::int32_t other, std::int32_t) {
         nodes.insert(nodes.end(), P.column.begin() + P.first[other], P.column.begin() + P.first[other + 1]);
-      }
+      });
       std::sort(nodes.begin(), nodes.end());
       nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-      for (std::int32_t k = pattern.first[row]; read && k < pattern.first[row + 1]; ++k) {
-        const std::int32_t other = pattern.column[k];
+      forColumns([&](std::int32_t other, std::int32_t) {
         for (std::int32_t e = P.first[other]; e < P.first[other + 1]; ++e) {
           const auto found = std::lower_bound(nodes.begin(), nodes.end(), P.column[e]);
-          level.productSlot.push_back(found - nodes.begin());
+          slots.push_back(static_cast<std::uint32_t>(found - nodes.begin()));
         }
-      }
+      });
+      level.productSlots.Add(slots);
       productColumn.insert(productColumn.end(), nodes.begin(), nodes.end());
       level.productFirst.push_back(static_cast<std::int32_t>(productColumn.size()));
     }
@@ -180,29 +165,30 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
     std::vector<std::int32_t> firstChunk(Chunks(P.nodes, kNodeSlab), Chunks(P.rows(), kProductChunk));
     std::vector<std::int32_t> lastChunk(firstChunk.size(), -1);
     for (int node = 0; node < P.nodes; ++node) {
-      for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
+      level.restriction.ForRow(P, node, [&](std::int32_t row, Real) {
         std::int32_t &least = firstChunk[node / kNodeSlab], &most = lastChunk[node / kNodeSlab];
-        least = std::min(least, level.row[e] / kProductChunk);
-        most = std::max(most, level.row[e] / kProductChunk);
-      }
+        least = std::min(least, row / kProductChunk);
+        most = std::max(most, row / kProductChunk);
+      });
     }
     level.window = MakeWindow(Chunks(P.rows(), kProductChunk), firstChunk, lastChunk);
     greatestProduct = std::max(greatestProduct, level.chunkBlocks * static_cast<std::size_t>(level.window.slots));
 
     for (int node = 0; node < P.nodes; ++node) {
-      level.slotFirst.push_back(level.slot.size());
-      for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
-        const auto begin = productColumn.begin() + level.productFirst[level.row[e]];
-        const auto end = productColumn.begin() + level.productFirst[level.row[e] + 1];
+      slots.clear();
+      level.restriction.ForRow(P, node, [&](std::int32_t row, Real) {
+        const auto begin = productColumn.begin() + level.productFirst[row];
+        const auto end = productColumn.begin() + level.productFirst[row + 1];
         const auto diagonal = std::lower_bound(begin, end, node);
-        level.skip.push_back(diagonal - begin);
+        slots.push_back(static_cast<std::uint32_t>(diagonal - begin));
         for (auto at = diagonal; at != end; ++at) {
-          level.slot.push_back(coarse.Find(node, *at) - level.matrix.Diagonal(node));
+          slots.push_back(static_cast<std::uint32_t>(coarse.Find(node, *at) - coarse.storedFirst[node]));
         }
-      }
+      });
+      level.slots.Add(slots);
     }
-
-    for (Slots* slots : {&level.productSlot, &level.slot, &level.skip}) slots->shrink_to_fit();
+    level.productSlots.Finish();
+    level.slots.Finish();
 
     level.right.assign(VectorLength(P.nodes), 0);
     level.solution.assign(VectorLength(P.nodes), 0);
@@ -245,59 +231,54 @@ void Multigrid::RefillBlocks(const SystemMatrix& fine, Level& level, const Execu
   const auto multiply = [&](int chunk, const auto* slots) {  // T = H P, by rows
     const int begin = chunk * kProductChunk, end = std::min(p.rows(), begin + kProductChunk);
     const std::int64_t shift = level.ProductShift(begin);
-    const auto* __restrict slot = slots + level.productSlotFirst[chunk];
     for (int row = begin; row < end; ++row) {
+      const auto* __restrict slot = slots + level.productSlots.First(row);
       const std::int32_t productBegin = level.productFirst[row], productEnd = level.productFirst[row + 1];
       if (productBegin == productEnd) continue;
       Real* __restrict to = product_.data() + 9 * (shift + productBegin);
       std::fill_n(to, 9 * static_cast<std::size_t>(productEnd - productBegin), Real{0});
       const Real* stored = fine.DiagonalBlock(row);
-      const std::int32_t* mirror = fine.mirror().data() + (pattern.first[row] - fine.storedFirst()[row]);
-      for (std::int32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
+      pattern.columns.ForRow(row, [&](std::int32_t other, std::int32_t mirrored) {
         const Real* block = stored;
         Real transposed[9];
-        if (pattern.column[k] < row) {
-          const Real* from = fine.Block(*mirror++);
+        if (other < row) {
+          const Real* from = fine.DiagonalBlock(other) + 9 * static_cast<std::size_t>(mirrored);
           for (int c = 0; c < 9; ++c) transposed[c] = from[c % 3 * 3 + c / 3];
           block = transposed;
         } else {
           stored += 9;
         }
-        const std::int32_t other = pattern.column[k];
         for (std::int32_t e = p.first[other]; e < p.first[other + 1]; ++e) {
           AddScaled(to + 9 * static_cast<std::size_t>(*slot++), p.weight[e], block);
         }
-      }
+      });
     }
   };
   // A = P' T on and right of the diagonal, on top of the constant part.
   level.matrix.Reset(executor);
-  const auto sum = [&](int begin, int end, const auto* skip, const auto* slots) {
-    const auto* __restrict slot = slots + level.slotFirst[begin];
+  const auto sum = [&](int begin, int end, const auto* slots) {
     for (int node = begin; node < end; ++node) {
+      const auto* __restrict slot = slots + level.slots.First(node);
       Real* __restrict to = level.matrix.DiagonalBlock(node);
-      for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
-        const Real weight = level.rowWeight[e];
-        const int row = level.row[e];
+      level.restriction.ForRow(p, node, [&](std::int32_t row, Real weight) {
         const std::int64_t shift = level.ProductShift(row);
-        const Real* __restrict from = product_.data() + 9 * (shift + level.productFirst[row] + skip[e]);
+        const Real* __restrict from = product_.data() + 9 * (shift + level.productFirst[row] + *slot++);
         const Real* const last = product_.data() + 9 * (shift + level.productFirst[row + 1]);
         for (; from < last; from += 9) AddScaled(to + 9 * static_cast<std::size_t>(*slot++), weight, from);
-      }
+      });
     }
   };
   int made = 0;
   for (int slab = 0; slab < static_cast<int>(level.window.end.size()); ++slab) {
     const int first = std::exchange(made, level.window.end[slab]);
     executor.ForChunks(made - first, [&](int chunk) {
-      level.productSlot.InArray([&](const auto* slots) { multiply(first + chunk, slots); });
+      level.productSlots.InArray([&](const auto* slots) { multiply(first + chunk, slots); });
     });
     const int begin = slab * kNodeSlab, count = std::min(kNodeSlab, p.nodes - begin);
     executor.ForChunks(Chunks(count, kNodeChunk), [&](int chunk) {
       const int from = begin + chunk * kNodeChunk;
       const int to = std::min(from + kNodeChunk, begin + count);
-      level.skip.InArray(
-          [&](const auto* skip) { level.slot.InArray([&](const auto* slots) { sum(from, to, skip, slots); }); });
+      level.slots.InArray([&](const auto* slots) { sum(from, to, slots); });
     });
   }
 }
@@ -359,12 +340,11 @@ void Multigrid::RefillExtra(const SystemMatrix& fine, Level& level, const Execut
     }
   });
   SumRows(p.nodes, level.matrix.extra(), executor, [&](int node, ExtraPart& part) {  // P' (E P)
-    for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
-      const std::int32_t row = level.row[e];
+    level.restriction.ForRow(p, node, [&](std::int32_t row, Real weight) {
       for (std::int32_t k = extraProduct_.begin[row]; k < extraProduct_.end[row]; ++k) {
-        part.Add(extraProduct_.column[k], level.rowWeight[e], &extraProduct_.block[9 * static_cast<std::size_t>(k)]);
+        part.Add(extraProduct_.column[k], weight, &extraProduct_.block[9 * static_cast<std::size_t>(k)]);
       }
-    }
+    });
   });
 }
 
@@ -398,9 +378,9 @@ void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, Real* sc
     executor.ForChunks(Chunks(level.p.nodes, kRestrictChunk), [&](int chunk) {
       for (int node = chunk * kRestrictChunk; node < std::min(level.p.nodes, (chunk + 1) * kRestrictChunk); ++node) {
         Real4 sum = Real4::Zero();
-        for (std::int32_t e = level.rowFirst[node]; e < level.rowFirst[node + 1]; ++e) {
-          sum += Real4::Load(from + 3 * static_cast<std::size_t>(level.row[e])) * level.rowWeight[e];
-        }
+        level.restriction.ForRow(level.p, node, [&](std::int32_t row, Real weight) {
+          sum += Real4::Load(from + 3 * static_cast<std::size_t>(row)) * weight;
+        });
         Store3(sum, to + 3 * static_cast<std::size_t>(node));
       }
     });
@@ -433,10 +413,9 @@ std::size_t Multigrid::MemoryBytes() const {
   for (const ExtraPart& part : parts_) bytes += Bytes(part.place) + Bytes(part.column) + Bytes(part.block);
   for (const auto& owned : levels_) {
     const Level& level = *owned;
-    bytes += Bytes(level.p.first) + Bytes(level.p.column) + Bytes(level.p.weight) + Bytes(level.rowFirst) +
-             Bytes(level.row) + Bytes(level.rowWeight) + Bytes(level.productFirst) + Bytes(level.productSlotFirst) +
-             level.productSlot.Bytes() + level.skip.Bytes() + level.slot.Bytes() + Bytes(level.slotFirst) +
-             Bytes(level.right) + Bytes(level.solution) + Bytes(level.scratch) + level.matrix.MemoryBytes();
+    bytes += Bytes(level.p.first) + Bytes(level.p.column) + Bytes(level.p.weight) + level.restriction.MemoryBytes() +
+             Bytes(level.productFirst) + level.productSlots.Bytes() + level.slots.Bytes() + Bytes(level.right) +
+             Bytes(level.solution) + Bytes(level.scratch) + level.matrix.MemoryBytes();
   }
   return bytes;
 }

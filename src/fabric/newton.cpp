@@ -59,7 +59,7 @@ void NewtonSolver::SetStep(double h) {
   ForRange(executor_, Index(model_.vertexCount), [&](int row) {
     double bending = 0;
     model_.plates.ForRow(row, [&](std::int32_t column, double value) { bending = column == row ? value : bending; });
-    matrix_.SetConstant(row, static_cast<Real>(bending + model_.mass[Index(row)] / (h * h)));
+    matrix_.SetDiagonal(row, static_cast<Real>(bending + model_.mass[Index(row)] / (h * h)));
   });
 }
 

@@ -135,10 +135,9 @@ std::vector<std::int32_t> Aggregate(const BlockPattern& graph, std::span<const s
   std::vector<std::int32_t> aggregate(n, -1);
   count = 0;
   const auto forNeighbours = [&](int row, auto&& visit) {
-    for (std::int32_t k = graph.first[row]; k < graph.first[row + 1]; ++k) {
-      const std::int32_t other = graph.column[k];
+    graph.columns.ForRow(row, [&](std::int32_t other, std::int32_t) {
       if (other != row && !IsPinned(pinned, other)) visit(other);
-    }
+    });
   };
   for (int row = 0; row < n; ++row) {
     if (IsPinned(pinned, row) || aggregate[row] >= 0) continue;
@@ -186,13 +185,13 @@ Prolongation CoarsenByAggregates(const BlockPattern& graph, std::span<const std:
     row.clear();
     if (aggregate[r] >= 0) {
       int neighbours = 0;
-      for (std::int32_t k = graph.first[r]; k < graph.first[r + 1]; ++k) {
-        const std::int32_t other = aggregate[graph.column[k]];
-        if (graph.column[k] == r || other < 0) continue;
+      graph.columns.ForRow(r, [&](std::int32_t column, std::int32_t) {
+        const std::int32_t other = aggregate[column];
+        if (column == r || other < 0) return;
         ++neighbours;
         row.push_back({other, kSmoothing});
         if (other < aggregate[r]) links.push_back({other, aggregate[r]});
-      }
+      });
       for (auto& [column, weight] : row) weight /= neighbours;
       row.push_back({aggregate[r], 1 - kSmoothing});  // of a row that is alone made one by AppendRow
     }
@@ -204,30 +203,54 @@ Prolongation CoarsenByAggregates(const BlockPattern& graph, std::span<const std:
 
 }  // namespace
 
+Restriction MakeRestriction(const Prolongation& p) {
+  // The entries of P by column.
+  std::vector<std::int32_t> first(p.nodes + 1, 0), row(p.column.size()), place(p.column.size());
+  for (const std::int32_t node : p.column) ++first[node + 1];
+  for (int node = 0; node < p.nodes; ++node) first[node + 1] += first[node];
+  std::vector<std::int32_t> next(first.begin(), first.end() - 1);
+  for (int r = 0; r < p.rows(); ++r) {
+    for (std::int32_t e = p.first[r]; e < p.first[r + 1]; ++e) {
+      const std::int32_t at = next[p.column[e]]++;
+      row[at] = r, place[at] = e - p.first[r];
+    }
+  }
+  Restriction restriction;
+  RowSharer<std::int32_t> sharer(p.nodes);
+  std::vector<std::pair<std::int32_t, std::int32_t>> entries;  // of a node
+  for (int node = 0; node < p.nodes; ++node) {
+    entries.clear();
+    for (std::int32_t e = first[node]; e < first[node + 1]; ++e) entries.push_back({row[e], place[e]});
+    const std::int32_t least = entries.empty() ? 0 : entries.front().first;
+    restriction.firstRow.push_back(least);
+    sharer.Append(entries, least);
+  }
+  restriction.firstRow.shrink_to_fit();
+  restriction.entry = sharer.Take();
+  return restriction;
+}
+
 BlockPattern CoarsePattern(const BlockPattern& pattern, const Prolongation& p) {
   // The fine rows of each node, then what they are coupled with.
   std::vector<std::vector<std::int32_t>> rowsOf(p.nodes);
   for (int row = 0; row < p.rows(); ++row) {
     for (std::int32_t k = p.first[row]; k < p.first[row + 1]; ++k) rowsOf[p.column[k]].push_back(row);
   }
-  BlockPattern coarse;
-  coarse.first.push_back(0);
+  PatternMaker coarse(p.nodes);
   std::vector<std::int32_t> seenBy(p.nodes, -1), columns;
   for (int node = 0; node < p.nodes; ++node) {
     columns.clear();
     for (const std::int32_t row : rowsOf[node]) {
-      for (std::int32_t k = pattern.first[row]; k < pattern.first[row + 1]; ++k) {
-        const std::int32_t other = pattern.column[k];
+      pattern.columns.ForRow(row, [&](std::int32_t other, std::int32_t) {
         for (std::int32_t e = p.first[other]; e < p.first[other + 1]; ++e) {
           if (std::exchange(seenBy[p.column[e]], node) != node) columns.push_back(p.column[e]);
         }
-      }
+      });
     }
     std::sort(columns.begin(), columns.end());
-    coarse.column.insert(coarse.column.end(), columns.begin(), columns.end());
-    coarse.first.push_back(static_cast<std::int32_t>(coarse.column.size()));
+    coarse.Append(columns);
   }
-  return coarse;
+  return coarse.Take();
 }
 
 std::vector<Prolongation> MaterialHierarchy(int vertices, const MaterialMesh& mesh,

@@ -18,12 +18,35 @@ namespace percale::fabric {
 /// three components. Weights of a row add up to one, so that the whole moves as one; rows of pinned vertices are empty,
 /// and so are those of vertices without neighbours that move.
 struct Prolongation {
-  int nodes = 0;                            ///< Columns.
-  std::vector<std::int32_t> first, column;  ///< As in BlockPattern.
-  std::vector<Real> weight;                 ///< Per entry, > 0.
+  int nodes = 0;                     ///< Columns.
+  std::vector<std::int32_t> first;   ///< Per row: its first entry; one more number at the end.
+  std::vector<std::int32_t> column;  ///< Per entry, ascending in a row.
+  std::vector<Real> weight;          ///< Per entry, > 0.
 
   int rows() const { return static_cast<int>(first.size()) - 1; }
 };
+
+/// P' of a P, which has its numbers.
+struct Restriction {
+  std::vector<std::int32_t> firstRow;  ///< Per node: the least row of P with a weight for it.
+  SharedRows<std::int32_t> entry;      ///< Per node those rows, ascending, less that one; the value is the place of the
+                                       ///< weight in its row.
+
+  /// Calls visit(row, weight) for each of a node's weights.
+  template <class Visit>
+  void ForRow(const Prolongation& p, std::int32_t node, Visit&& visit) const {
+    const auto kind = static_cast<std::size_t>(entry.kind[static_cast<std::size_t>(node)]);
+    const std::int32_t least = firstRow[static_cast<std::size_t>(node)];
+    const auto end = static_cast<std::size_t>(entry.first[kind + 1]);
+    for (auto e = static_cast<std::size_t>(entry.first[kind]); e < end; ++e) {
+      const std::int32_t row = least + entry.offset[e];
+      visit(row, p.weight[static_cast<std::size_t>(p.first[static_cast<std::size_t>(row)] + entry.value[e])]);
+    }
+  }
+  std::size_t MemoryBytes() const { return firstRow.capacity() * sizeof(std::int32_t) + entry.MemoryBytes(); }
+};
+
+Restriction MakeRestriction(const Prolongation& prolongation);
 
 /// Coordinates in the cloth as it was cut, in metres, in as many pieces as there are panels. Where panels are sewn
 /// together a vertex has more than one point of material.

@@ -50,10 +50,36 @@ void Grow(Array& array, std::size_t size) {
 
 }  // namespace
 
-std::int32_t BlockPattern::Find(std::int32_t row, std::int32_t columnSought) const {
-  const auto begin = column.begin() + first[row], end = column.begin() + first[row + 1];
-  const auto found = std::lower_bound(begin, end, columnSought);
-  return found != end && *found == columnSought ? static_cast<std::int32_t>(found - column.begin()) : -1;
+std::int32_t BlockPattern::Find(std::int32_t row, std::int32_t other) const {
+  const std::int32_t low = std::min(row, other), kind = columns.kind[low];
+  const auto end = columns.offset.begin() + columns.first[kind + 1];
+  // On and right of the diagonal.
+  const auto begin = end - (storedFirst[low + 1] - storedFirst[low]);
+  const std::int32_t offset = std::max(row, other) - low;
+  const auto found = std::lower_bound(begin, end, offset);
+  return found != end && *found == offset ? storedFirst[low] + static_cast<std::int32_t>(found - begin) : -1;
+}
+
+PatternMaker::PatternMaker(int rows) : columns_(rows), mirrored_(rows, 0) {
+  storedFirst_.reserve(static_cast<std::size_t>(rows) + 1);
+  storedFirst_.push_back(0);
+}
+
+void PatternMaker::Append(std::span<const std::int32_t> columns) {
+  const auto row = static_cast<std::int32_t>(storedFirst_.size()) - 1;
+  row_.clear();
+  std::int32_t stored = 0;
+  for (const std::int32_t column : columns) {
+    // Right of the diagonal the rows of a column come in order.
+    row_.push_back({column, column < row ? ++mirrored_[column] : 0});
+    stored += column < row ? 0 : 1;
+  }
+  columns_.Append(row_);
+  storedFirst_.push_back(storedFirst_.back() + stored);
+}
+
+BlockPattern PatternMaker::Take() {
+  return {columns_.Take(), std::move(storedFirst_)};
 }
 
 BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std::span<const Edge> morePairs) {
@@ -61,10 +87,8 @@ BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std:
     for (const Triangle& t : triangles) couple(t.a, t.b), couple(t.b, t.c), couple(t.c, t.a);
     for (const Edge& pair : morePairs) couple(pair.a, pair.b);
   };
-  // Rows with a block for each time that two are coupled; then each once.
-  BlockPattern pattern;
-  std::vector<std::int32_t>&first = pattern.first, &column = pattern.column;
-  first.assign(static_cast<std::size_t>(vertices) + 1, 1);
+  // Rows with a column for each time that two are coupled; then each once.
+  std::vector<std::int32_t> first(static_cast<std::size_t>(vertices) + 1, 1), column;
   first[0] = 0;
   forPairs([&](std::int32_t a, std::int32_t b) { ++first[a + 1], ++first[b + 1]; });
   for (int v = 0; v < vertices; ++v) first[v + 1] += first[v];
@@ -72,17 +96,13 @@ BlockPattern MakePattern(int vertices, std::span<const Triangle> triangles, std:
   std::vector<std::int32_t> next(first.begin(), first.end() - 1);
   for (int v = 0; v < vertices; ++v) column[next[v]++] = v;
   forPairs([&](std::int32_t a, std::int32_t b) { column[next[a]++] = b, column[next[b]++] = a; });
-  auto end = column.begin();
+  PatternMaker pattern(vertices);
   for (int v = 0; v < vertices; ++v) {
-    const auto begin = column.begin() + first[v], stop = column.begin() + first[v + 1];
-    std::sort(begin, stop);
-    first[v] = static_cast<std::int32_t>(end - column.begin());
-    end = std::copy(begin, std::unique(begin, stop), end);
+    const auto begin = column.begin() + first[v], end = column.begin() + first[v + 1];
+    std::sort(begin, end);
+    pattern.Append({begin, std::unique(begin, end)});
   }
-  first[vertices] = static_cast<std::int32_t>(end - column.begin());
-  column.erase(end, column.end());
-  column.shrink_to_fit();
-  return pattern;
+  return pattern.Take();
 }
 
 void SumByColumn(std::vector<std::pair<std::int32_t, double>>& row) {
@@ -117,53 +137,47 @@ void SystemMatrix::SetUp(const ScalarMatrix& constant, std::span<const std::uint
   assert(constant.rows() == pattern_.rows());
   pinned_.assign(pinned.begin(), pinned.end());
   const int n = rows();
-  storedFirst_.reserve(static_cast<std::size_t>(n) + 1);
-  storedFirst_.assign(1, 0);
-  mirror_.clear();
-  mirror_.reserve(static_cast<std::size_t>(pattern_.blocks() - n) / 2);
   cleared_.clear();
+  diagonal_.assign(n, 0);
+  constant_ = SharedRows<Real>();
+  RowSharer<Real> shared(n);
+  std::vector<std::pair<std::int32_t, Real>> values, outside;  // of a row
   for (int row = 0; row < n; ++row) {
-    const std::int32_t diagonal = pattern_.Find(row, row);
-    for (std::int32_t k = pattern_.first[row]; k < diagonal; ++k) {
-      const std::int32_t above = pattern_.column[k];
-      mirror_.push_back(storedFirst_[above] + pattern_.Find(above, row) - Diagonal(above));
-    }
-    for (std::int32_t k = diagonal; k < pattern_.first[row + 1]; ++k) {
-      if (Pinned(row) || Pinned(pattern_.column[k])) cleared_.push_back(storedFirst_[row] + k - diagonal);
-    }
-    storedFirst_.push_back(storedFirst_[row] + pattern_.first[row + 1] - diagonal);
-  }
-  const std::size_t stored = storedFirst_.back();
-  constant_.assign(stored, 0);
-  blocks_.assign(9 * stored + 1, 0);
-  inverse_.assign(9 * static_cast<std::size_t>(n) + 1, 0);
-  cleared_.shrink_to_fit();
-  rest_ = SharedRows<Real>();
-  RowSharer<Real> rest(n);
-  std::vector<std::pair<std::int32_t, Real>> outside;  // what a row has outside the pattern
-  for (int row = 0; row < n; ++row) {
+    values.clear();
     outside.clear();
+    pattern_.columns.ForRow(row, [&](std::int32_t column, std::int32_t) {
+      if (column < row) return;
+      if (Pinned(row) || Pinned(column)) cleared_.push_back(pattern_.Find(row, column));
+      if (column > row) values.push_back({column, 0});
+    });
     constant.ForRow(row, [&](std::int32_t column, double value) {
       if (Pinned(row) || Pinned(column)) return;
-      if (const std::int32_t inside = pattern_.Find(row, column); inside < 0) {
+      const std::int32_t inside = pattern_.Find(row, column);
+      if (inside < 0)
         outside.push_back({column, static_cast<Real>(value)});
-      } else if (column >= row) {
-        constant_[storedFirst_[row] + inside - Diagonal(row)] = static_cast<Real>(value);
-      }
+      else if (column == row)
+        diagonal_[row] = static_cast<Real>(value);
+      else if (column > row)
+        values[inside - pattern_.storedFirst[row] - 1].second = static_cast<Real>(value);
     });
-    rest.Append(outside);
+    values.insert(values.end(), outside.begin(), outside.end());
+    shared.Append(values);
   }
-  rest_ = rest.Take();
+  constant_ = shared.Take();
+  cleared_.shrink_to_fit();
+  blocks_.assign(9 * static_cast<std::size_t>(pattern_.stored()) + 1, 0);
+  inverse_.assign(9 * static_cast<std::size_t>(n) + 1, 0);
   extra_.any = false;
 }
 
 void SystemMatrix::Reset(const Executor& executor) {
-  executor.ForChunks(Chunks(rows()), [&](int chunk) {
-    const int begin = chunk * kRowsPerChunk, end = std::min(rows(), begin + kRowsPerChunk);
-    for (std::int32_t k = storedFirst_[begin]; k < storedFirst_[end]; ++k) {
-      Real* block = Block(k);
-      for (int c = 0; c < 9; ++c) block[c] = 0;
-      block[0] = block[4] = block[8] = constant_[k];
+  ForRange(executor, static_cast<std::size_t>(rows()), [&](int row) {
+    const std::int32_t stored = pattern_.storedFirst[row + 1] - pattern_.storedFirst[row];
+    const Real* const constant = constant_.value.data() + constant_.first[constant_.kind[row]];
+    Real* block = DiagonalBlock(row);
+    for (std::int32_t k = 0; k < stored; ++k, block += 9) {
+      std::fill_n(block, 9, Real{0});
+      block[0] = block[4] = block[8] = k == 0 ? diagonal_[row] : constant[k - 1];
     }
   });
 }
@@ -254,15 +268,10 @@ std::array<Real, 9> SystemMatrix::WholeDiagonal(int row) const {
 RowsArgs SystemMatrix::Rows(int chunk, const Real* x, Real* y) const {
   return {.begin = chunk * kRowsPerChunk,
           .end = std::min(rows(), (chunk + 1) * kRowsPerChunk),
-          .first = pattern_.first.data(),
-          .column = pattern_.column.data(),
-          .storedFirst = storedFirst_.data(),
-          .mirror = mirror_.data(),
+          .columns = pattern_.columns.View(),
+          .storedFirst = pattern_.storedFirst.data(),
           .blocks = blocks_.data(),
-          .restKind = rest_.kind.data(),
-          .restFirst = rest_.first.data(),
-          .restOffset = rest_.offset.data(),
-          .restValue = rest_.value.data(),
+          .constant = constant_.View(),
           .extraBegin = extra_.begin.data(),
           .extraEnd = extra_.end.data(),
           .extraColumn = extra_.column.data(),
@@ -318,16 +327,16 @@ void SystemMatrix::ToDense(double* dense) const {
     for (int k = 0; k < 9; ++k) dense[(3 * row + k % 3) * n + 3 * column + k / 3] += static_cast<double>(block[k]);
   };
   for (int row = 0; row < rows(); ++row) {
-    for (std::int32_t k = Diagonal(row); k < pattern_.first[row + 1]; ++k) {
-      const Real* block = Block(storedFirst_[row] + k - Diagonal(row));
-      const int column = pattern_.column[k];
+    pattern_.columns.ForRow(row, [&](std::int32_t column, std::int32_t) {
+      if (column < row) return;
+      const Real* block = Block(pattern_.Find(row, column));
       add(row, column, block);
-      if (column == row) continue;
+      if (column == row) return;
       std::array<Real, 9> transposed;
       for (int c = 0; c < 9; ++c) transposed[c] = block[c % 3 * 3 + c / 3];
       add(column, row, transposed.data());
-    }
-    rest_.ForRow(row, [&](std::int32_t column, Real value) {
+    });
+    ForRest(row, [&](std::int32_t column, Real value) {
       for (int r = 0; r < 3; ++r) dense[(3 * row + r) * n + 3 * column + r] += static_cast<double>(value);
     });
     for (std::int32_t k = extra_.any ? extra_.begin[row] : 0; extra_.any && k < extra_.end[row]; ++k) {
@@ -337,9 +346,9 @@ void SystemMatrix::ToDense(double* dense) const {
 }
 
 std::size_t SystemMatrix::MemoryBytes() const {
-  return Bytes(pattern_.first) + Bytes(pattern_.column) + rest_.MemoryBytes() + Bytes(pinned_) + Bytes(storedFirst_) +
-         Bytes(mirror_) + Bytes(cleared_) + Bytes(constant_) + Bytes(blocks_) + Bytes(inverse_) + Bytes(extra_.begin) +
-         Bytes(extra_.end) + Bytes(extra_.column) + Bytes(extra_.block) + Bytes(extraFirst_) + Bytes(extraOrder_);
+  return pattern_.MemoryBytes() + constant_.MemoryBytes() + Bytes(diagonal_) + Bytes(pinned_) + Bytes(cleared_) +
+         Bytes(blocks_) + Bytes(inverse_) + Bytes(extra_.begin) + Bytes(extra_.end) + Bytes(extra_.column) +
+         Bytes(extra_.block) + Bytes(extraFirst_) + Bytes(extraOrder_);
 }
 
 }  // namespace percale::fabric

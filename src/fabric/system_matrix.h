@@ -28,16 +28,34 @@
 
 namespace percale::fabric {
 
-/// Which pairs of rows have a block: in compressed rows, the columns of each row ascending and with its own among them.
-/// Symmetric.
+/// Which pairs of rows have a block. Symmetric; those on and right of the diagonal are stored, row after row.
 struct BlockPattern {
-  std::vector<std::int32_t> first;   ///< Per row: index of its first block; one more number at the end.
-  std::vector<std::int32_t> column;  ///< Per block.
+  /// Per row its columns, ascending and with its own among them. The value of one left of the diagonal: how far behind
+  /// the first stored block of its row the one is that has this block transposed; of others 0.
+  SharedRows<std::int32_t> columns;
+  std::vector<std::int32_t> storedFirst;  ///< Per row: its first stored block, the diagonal's; one more at the end.
 
-  int rows() const { return static_cast<int>(first.size()) - 1; }
-  int blocks() const { return static_cast<int>(column.size()); }
-  /// The index of a block, -1 where there is none.
-  std::int32_t Find(std::int32_t row, std::int32_t columnSought) const;
+  int rows() const { return columns.rows(); }
+  int stored() const { return storedFirst.back(); }
+  /// The stored block of two rows, either way round; -1 where there is none.
+  std::int32_t Find(std::int32_t row, std::int32_t other) const;
+  std::size_t MemoryBytes() const { return columns.MemoryBytes() + storedFirst.capacity() * sizeof(std::int32_t); }
+};
+
+/// Makes a BlockPattern row by row.
+class PatternMaker {
+ public:
+  explicit PatternMaker(int rows);
+  /// Adds a row, its columns ascending and with its own among them.
+  void Append(std::span<const std::int32_t> columns);
+  BlockPattern Take();
+
+ private:
+  RowSharer<std::int32_t> columns_;
+  std::vector<std::int32_t> storedFirst_;
+  std::vector<std::int32_t>
+      mirrored_;  // per row: of its stored blocks right of the diagonal those with a transpose yet
+  std::vector<std::pair<std::int32_t, std::int32_t>> row_;  // (column, value)
 };
 
 /// Couples the corners of each triangle, and the ends of each of `morePairs`, over `vertices` of them.
@@ -82,8 +100,15 @@ class SystemMatrix {
 
   int rows() const { return pattern_.rows(); }
   const BlockPattern& pattern() const { return pattern_; }
-  /// S without rows and columns of pinned vertices and without what lies within the pattern, which Reset puts there.
-  const SharedRows<Real>& Rest() const { return rest_; }
+  /// Calls visit(column, value) for what S has in a row outside the pattern, rows and columns of pinned vertices left
+  /// out.
+  template <class Visit>
+  void ForRest(std::int32_t row, Visit&& visit) const {
+    const auto r = static_cast<std::size_t>(row), kind = static_cast<std::size_t>(constant_.kind[r]);
+    const std::int32_t inside = pattern_.storedFirst[r + 1] - pattern_.storedFirst[r] - 1;
+    for (std::int32_t e = constant_.first[kind] + inside; e < constant_.first[kind + 1]; ++e)
+      visit(row + constant_.offset[static_cast<std::size_t>(e)], constant_.value[static_cast<std::size_t>(e)]);
+  }
   bool Pinned(int row) const { return !pinned_.empty() && pinned_[row]; }
 
   // In this order for each Newton step:
@@ -94,24 +119,14 @@ class SystemMatrix {
   /// component c of its column is at 3 c + r. To be added to.
   Real* Block(std::int32_t index) { return &blocks_[9 * static_cast<std::size_t>(index)]; }
   const Real* Block(std::int32_t index) const { return &blocks_[9 * static_cast<std::size_t>(index)]; }
-  /// The stored blocks of a row are [storedFirst[row], storedFirst[row + 1]), in the order of the pattern: the last
-  /// ones of its row.
-  std::span<const std::int32_t> storedFirst() const { return storedFirst_; }
-  /// Of the other blocks of all rows, in the order of the pattern, the stored ones that they are the transposes of.
-  std::span<const std::int32_t> mirror() const { return mirror_; }
-  /// The index of the first stored block of a row in the pattern.
-  std::int32_t Diagonal(std::int32_t row) const {
-    const std::size_t r = static_cast<std::size_t>(row);
-    return pattern_.first[r + 1] - (storedFirst_[r + 1] - storedFirst_[r]);
-  }
-  Real* DiagonalBlock(int row) { return Block(storedFirst_[static_cast<std::size_t>(row)]); }
-  const Real* DiagonalBlock(int row) const { return Block(storedFirst_[static_cast<std::size_t>(row)]); }
-  /// Per stored block what S has there: who writes all blocks himself adds it to their diagonals, and needs no Reset.
-  std::span<const Real> constant() const { return constant_; }
+  Real* DiagonalBlock(int row) { return Block(pattern_.storedFirst[static_cast<std::size_t>(row)]); }
+  const Real* DiagonalBlock(int row) const { return Block(pattern_.storedFirst[static_cast<std::size_t>(row)]); }
+  /// What S has at stored blocks: who writes all blocks himself adds it to their diagonals, and needs no Reset. Per row
+  /// on the diagonal, and then right of it, in the order of the blocks; behind those comes what ForRest visits.
+  std::span<const Real> diagonal() const { return diagonal_; }
+  const SharedRows<Real>& constant() const { return constant_; }
   /// Sets what S has on the diagonal of a row.
-  void SetConstant(int row, Real value) {
-    constant_[static_cast<std::size_t>(storedFirst_[static_cast<std::size_t>(row)])] = value;
-  }
+  void SetDiagonal(int row, Real value) { diagonal_[static_cast<std::size_t>(row)] = value; }
   /// Sets E. Allocates only when there is more of it than ever before. Leaving it out keeps E.
   void SetExtra(std::span<const ExtraTerm> terms, const Executor& executor);
   /// Ends the filling: clears what belongs to pinned vertices and inverts the diagonal.
@@ -147,12 +162,11 @@ class SystemMatrix {
 
   const Kernels* kernels_;
   BlockPattern pattern_;
-  SharedRows<Real> rest_;
   std::vector<std::uint8_t> pinned_;
-  std::vector<std::int32_t> storedFirst_, mirror_;
   std::vector<std::int32_t> cleared_;  // stored blocks in rows and columns of pinned vertices
-  std::vector<Real> constant_;         // per stored block: what S has there
-  RealVector blocks_, inverse_;        // nine per stored block or row, and one more at the end
+  std::vector<Real> diagonal_;
+  SharedRows<Real> constant_;
+  RealVector blocks_, inverse_;  // nine per stored block or row, and one more at the end
   ExtraRows extra_;
   std::vector<std::int32_t> extraFirst_, extraOrder_;  // per row the terms that it is in, as 4 term + place
 };

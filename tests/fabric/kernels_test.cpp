@@ -273,7 +273,7 @@ TEST_CASE("the matrix is the sum of the triangles' blocks") {
   const test::Sheet sheet = test::Disc(4);
   const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);
   const auto blocksOf = test::TriangleBlocks(pattern, sheet.triangles);
-  const std::size_t blocks = Index(pattern.blocks()), parts = 3 * sheet.triangles.size();
+  const std::size_t blocks = Index(pattern.stored()), parts = 3 * sheet.triangles.size();
   const Lists corners = ListBy(sheet.vertices(), parts, [&](std::size_t e) {
     const Triangle& t = sheet.triangles[e / 3];
     return e % 3 == 0 ? t.a : e % 3 == 1 ? t.b : t.c;
@@ -284,27 +284,36 @@ TEST_CASE("the matrix is the sum of the triangles' blocks") {
   SplitMix64 random(3);
   RealVector hessian(kHessianReals * sheet.triangles.size() + 1, 0);
   for (Real& entry : hessian) entry = static_cast<Real>(2 * random.NextUnit() - 1);
-  // Stored are the blocks on and right of the diagonal.
-  std::vector<std::int32_t> storedFirst{0};
-  std::vector<std::size_t> stored;  // per block that is: its index in the pattern
-  for (int row = 0; row < sheet.vertices(); ++row) {
-    for (std::int32_t k = pattern.Find(row, row); k < pattern.first[Index(row) + 1]; ++k) stored.push_back(Index(k));
-    storedFirst.push_back(static_cast<std::int32_t>(stored.size()));
-  }
-  std::vector<Real> constant;
+  std::vector<Real> diagonal;
+  RowSharer<Real> constant(sheet.vertices());
   std::vector<double> expected(9 * blocks, 0);
-  for (const std::size_t k : stored) {
-    constant.push_back(static_cast<Real>(0.01 * pattern.column[k]));
-    for (const std::size_t c : {0, 4, 8}) expected[9 * k + c] += static_cast<double>(constant.back());
+  const auto addConstant = [&](std::int32_t row, std::int32_t column, Real value) {
+    for (const std::size_t c : {0, 4, 8})
+      expected[9 * Index(pattern.Find(row, column)) + c] += static_cast<double>(value);
+  };
+  for (std::int32_t row = 0; row < sheet.vertices(); ++row) {
+    diagonal.push_back(static_cast<Real>(0.01 * row));
+    addConstant(row, row, diagonal.back());
+    std::vector<std::pair<std::int32_t, Real>> values;
+    pattern.columns.ForRow(row, [&](std::int32_t column, std::int32_t) {
+      if (column <= row) return;
+      values.push_back({column, static_cast<Real>(0.02 * column)});
+      addConstant(row, column, values.back().second);
+    });
+    values.push_back({0, 7});  // outside the pattern: does not count here
+    constant.Append(values);
   }
+  const SharedRows<Real> constants = constant.Take();
   for (std::size_t e = 0; e < parts; ++e) {
     const auto& of = blocksOf[e / 3];
     const std::size_t k = e % 3, l = (k + 1) % 3;
     for (std::size_t c = 0; c < 9; ++c) {
       const double entry = hessian[e / 3 * kHessianReals + 9 * k + c];
       const std::size_t mirrored = c % 3 * 3 + c / 3;
-      expected[9 * Index(of[3 * k + l]) + c] += entry;
-      expected[9 * Index(of[3 * l + k]) + mirrored] += entry;
+      // Stored is the one of the two that is right of the diagonal.
+      const Triangle& t = sheet.triangles[e / 3];
+      const std::int32_t corner[3] = {t.a, t.b, t.c};
+      expected[9 * Index(of[3 * k + l]) + (corner[k] < corner[l] ? c : mirrored)] += entry;
       expected[9 * Index(of[4 * k]) + c] -= entry;
       expected[9 * Index(of[4 * l]) + mirrored] -= entry;
     }
@@ -312,14 +321,14 @@ TEST_CASE("the matrix is the sum of the triangles' blocks") {
   RealVector first;
   for (const Kernels* kernels : RunnableKernels()) {
     CAPTURE(kernels->name);
-    RealVector filled(9 * stored.size() + 1, 7);
+    RealVector filled(9 * blocks + 1, 7);
     for (const int begin : {0, 20}) {
       kernels->assemble({.begin = begin,
                          .end = begin == 0 ? 20 : sheet.vertices(),
-                         .first = pattern.first.data(),
-                         .column = pattern.column.data(),
-                         .storedFirst = storedFirst.data(),
-                         .constant = constant.data(),
+                         .columns = pattern.columns.View(),
+                         .storedFirst = pattern.storedFirst.data(),
+                         .diagonal = diagonal.data(),
+                         .constant = constants.View(),
                          .cornerFirst = corners.first.data(),
                          .corner = corners.entry.data(),
                          .parts = begin == 0 ? codes.narrow() : nullptr,
@@ -329,9 +338,7 @@ TEST_CASE("the matrix is the sum of the triangles' blocks") {
                          .hessian = hessian.data(),
                          .blocks = filled.data()});
     }
-    for (std::size_t k = 0; k < 9 * stored.size(); ++k) {
-      CHECK(std::abs(filled[k] - expected[9 * stored[k / 9] + k % 9]) < 1e-5);
-    }
+    for (std::size_t k = 0; k < 9 * blocks; ++k) CHECK(std::abs(filled[k] - expected[k]) < 1e-5);
     CHECK(filled.back() == 7);
     if (first.empty()) first = filled;
     CHECK(filled == first);

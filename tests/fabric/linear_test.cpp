@@ -15,6 +15,7 @@
 #include "fabric/dense_factor.h"
 #include "fabric/multigrid.h"
 #include "fabric/prolongation.h"
+#include "fabric/slots.h"
 #include "fabric/system_matrix.h"
 #include "math/splitmix64.h"
 #include "tests/fabric/decompositions.h"
@@ -148,13 +149,75 @@ TEST_CASE("blocks are where the corners of triangles say") {
   const Sheet sheet = Square(5);
   const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles, std::vector<Edge>{{0, 24}});
   CHECK(pattern.rows() == 25);
-  CHECK(pattern.Find(0, 24) >= 0);
-  CHECK(pattern.Find(24, 0) >= 0);
+  // By their lower row, then by the other.
+  std::set<std::pair<std::int32_t, std::int32_t>> pairs{{0, 24}};
+  for (std::int32_t v = 0; v < 25; ++v) pairs.insert({v, v});
+  for (const Triangle& t : sheet.triangles) {
+    for (const auto& [a, b] : {std::pair(t.a, t.b), {t.b, t.c}, {t.c, t.a}}) pairs.insert(std::minmax(a, b));
+  }
+  CHECK(pattern.stored() == static_cast<int>(pairs.size()));
+  std::int32_t index = 0;
+  for (const auto& [a, b] : pairs) {
+    CHECK(pattern.Find(a, b) == index);
+    CHECK(pattern.Find(b, a) == index++);
+  }
   CHECK(pattern.Find(0, 23) == -1);
-  const auto blocks = TriangleBlocks(pattern, sheet.triangles);
-  for (std::size_t t = 0; t < blocks.size(); ++t) {
-    const int corners[3] = {sheet.triangles[t].a, sheet.triangles[t].b, sheet.triangles[t].c};
-    for (int k = 0; k < 9; ++k) CHECK(blocks[t][k] == pattern.Find(corners[k / 3], corners[k % 3]));
+  CHECK(pattern.Find(23, 0) == -1);
+  // A row says where the stored blocks are that have its others transposed.
+  for (std::int32_t row = 0; row < 25; ++row) {
+    std::int32_t before = -1;
+    pattern.columns.ForRow(row, [&](std::int32_t column, std::int32_t mirrored) {
+      CHECK(column > std::exchange(before, column));
+      if (column < row) CHECK(pattern.storedFirst[column] + mirrored == pattern.Find(row, column));
+      if (column >= row) CHECK(mirrored == 0);
+    });
+  }
+}
+
+TEST_CASE("what tells of a regular grid is kept once for rows that are alike") {
+  const auto kinds = [](int side) {
+    const Sheet sheet = Square(side);
+    const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);
+    return pattern.columns.first.size() - 1;
+  };
+  CHECK(kinds(40) == kinds(12));
+  CHECK(kinds(12) < 20);
+}
+
+TEST_CASE("a restriction is the transpose of its prolongation, and lists are what was added") {
+  const Sheet sheet = Disc(12);
+  const BlockPattern pattern = MakePattern(sheet.vertices(), sheet.triangles);
+  for (const Prolongation& p : MakeHierarchy(pattern, sheet.Mesh())) {
+    std::vector<std::vector<std::pair<std::int32_t, Real>>> expected(p.nodes);
+    for (std::int32_t row = 0; row < p.rows(); ++row) {
+      for (std::int32_t e = p.first[row]; e < p.first[row + 1]; ++e)
+        expected[p.column[e]].push_back({row, p.weight[e]});
+    }
+    const Restriction restriction = MakeRestriction(p);
+    for (std::int32_t node = 0; node < p.nodes; ++node) {
+      std::vector<std::pair<std::int32_t, Real>> row;
+      restriction.ForRow(p, node, [&](std::int32_t r, Real weight) { row.push_back({r, weight}); });
+      CHECK(row == expected[node]);
+    }
+  }
+  for (const std::uint32_t most : {200u, 100000u}) {  // in one byte each, and in four
+    SplitMix64 random(5);
+    SlotLists lists;
+    std::vector<std::vector<std::uint32_t>> added;
+    for (int i = 0; i < 400; ++i) {
+      const bool again = i > 0 && random.NextUnit() < 0.5;
+      std::vector<std::uint32_t> list(static_cast<std::size_t>(4 * random.NextUnit()));
+      for (std::uint32_t& slot : list) slot = static_cast<std::uint32_t>(most * random.NextUnit());
+      added.push_back(again ? added[static_cast<std::size_t>(i * random.NextUnit())] : list);
+      lists.Add(added.back());
+    }
+    lists.Finish();
+    lists.InArray([&](const auto* slots) {
+      for (std::size_t i = 0; i < added.size(); ++i) {
+        const auto* const first = slots + lists.First(static_cast<std::int32_t>(i));
+        CHECK(std::equal(added[i].begin(), added[i].end(), first));
+      }
+    });
   }
 }
 

@@ -128,7 +128,7 @@ inline std::vector<double> VertexAreas(const Sheet& sheet) {
   return areas;
 }
 
-/// For each triangle the indices of its nine blocks: (corner r, corner c) at 3 r + c, the corners being a, b, c.
+/// For each triangle the stored ones of its nine blocks: of corners r and c at 3 r + c, the corners being a, b, c.
 inline std::vector<std::array<std::int32_t, 9>> TriangleBlocks(const fabric::BlockPattern& pattern,
                                                                std::span<const Triangle> triangles) {
   std::vector<std::array<std::int32_t, 9>> blocks;
@@ -188,7 +188,7 @@ inline void AddMembrane(const Sheet& sheet, const Cloth& cloth, fabric::SystemMa
       const std::int32_t corners[3] = {of.a, of.b, of.c};
       const std::int32_t row = corners[pair / 3], column = corners[pair % 3];
       if (column < row) continue;  // not stored
-      fabric::Real* block = matrix.DiagonalBlock(row) + 9 * (matrix.pattern().Find(row, column) - matrix.Diagonal(row));
+      fabric::Real* block = matrix.Block(matrix.pattern().Find(row, column));
       for (int c = 0; c < 3; ++c) {
         for (int r = 0; r < 3; ++r) {
           double sum = 0;
