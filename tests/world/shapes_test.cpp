@@ -212,7 +212,9 @@ TEST_CASE("Patches change the material where they lie, and several multiply") {
     Patch patch;
     patch.stretch = 3, patch.bend = 100, patch.density = 2;
     scene.patches = {patch};
-    CHECK(Mass(Model(scene)) == doctest::Approx(2 * mass));
+    fabric::FabricModel whole = Model(scene);
+    CHECK(Mass(whole) == doctest::Approx(2 * mass));
+    CHECK(whole.Buckling(20) == doctest::Approx(std::sqrt(100 * 2) / 3 * plain.Buckling(20)).epsilon(1e-9));
     if (mesh)
       patch.group = "middle";
     else
@@ -238,7 +240,8 @@ TEST_CASE("Patches change the material where they lie, and several multiply") {
     fabric::TakeMaterials(scene, model);
     CHECK(model.mass == plain.mass);
     CHECK(model.strength == plain.strength);
-    CHECK(model.buckling == plain.buckling);
+    CHECK(model.stiffening == plain.stiffening);
+    for (std::size_t t = 0; t < model.triangles.size(); ++t) CHECK(model.Buckling(t) == plain.Buckling(t));
   }
 }
 
