@@ -37,6 +37,13 @@ bool InBounds(const Vec3& x) {
   return std::abs(x.x) <= kBound && std::abs(x.y) <= kBound && std::abs(x.z) <= kBound;
 }
 
+/// What is of one cloth. `first`: where each cloth begins, and the end.
+template <class T>
+std::span<const T> PartOf(std::span<const T> all, std::span<const int> first, int cloth) {
+  const int begin = first[Index(cloth)], end = first[Index(cloth) + 1];
+  return all.subspan(Index(begin), Index(end - begin));
+}
+
 }  // namespace
 
 FabricEngine::FabricEngine(const Scene& scene, FabricModel model, const Executor& executor)
@@ -482,8 +489,15 @@ double FabricEngine::ElasticEnergy() {
 }
 
 std::span<const double> FabricEngine::Masses(int cloth) const {
-  const int first = model_.firstVertex[Index(cloth)], end = model_.firstVertex[Index(cloth) + 1];
-  return std::span(model_.mass).subspan(Index(first), Index(end - first));
+  return PartOf<double>(model_.mass, model_.firstVertex, cloth);
+}
+
+std::span<const Vec3> FabricEngine::Start(int cloth) const {
+  return PartOf<Vec3>(model_.start, model_.firstVertex, cloth);
+}
+
+std::span<const Triangle> FabricEngine::Triangles(int cloth) const {
+  return PartOf<Triangle>(model_.triangles, model_.firstTriangle, cloth);
 }
 
 VertexRef FabricEngine::FindOutOfBounds() const {

@@ -77,6 +77,10 @@ class FabricEngine {
   Stretch GreatestStretch() const;
   double ElasticEnergy();                           ///< [J]
   std::span<const double> Masses(int cloth) const;  ///< Of its vertices [kg].
+  /// Where its vertices started [m]; stays valid as long as the engine.
+  std::span<const Vec3> Start(int cloth) const;
+  /// Likewise its triangles, which name vertices by numbers over all cloths.
+  std::span<const Triangle> Triangles(int cloth) const;
   /// The first vertex that is out of bounds, or that inertia leads there.
   VertexRef FindOutOfBounds() const;
 

@@ -260,6 +260,14 @@ RestTriangle<double> FabricModel::Rest(std::size_t triangle) const {
   return MakeRestTriangle<double>(Corner(*this, t, 0), Corner(*this, t, 1), Corner(*this, t, 2));
 }
 
+double FabricModel::Buckling(std::size_t triangle) const {
+  const Triangle& t = triangles[triangle];
+  const double factor = stiffening.empty() ? 1 : stiffening[triangle];
+  const double stiffness = membranes[ClothOf(static_cast<std::int64_t>(triangle))].bendStiffness * factor;
+  return BucklingStress(stiffness, mass[Index(t.a)] + mass[Index(t.b)] + mass[Index(t.c)], Rest(triangle).area) /
+         Strength(triangle);
+}
+
 FabricModel BuildModel(const Scene& scene, std::span<const RestMesh> meshes) {
   FabricModel model;
   std::vector<Vec2> material;
@@ -290,6 +298,7 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     Membrane membrane;
     membrane.kind = cloth.membraneLaw;
     membrane.damping = cloth.stretchDamping;
+    membrane.bendStiffness = std::sqrt(cloth.bendWarp * cloth.bendWeft);
     membrane.orthotropic = OrthotropicMembrane(cloth.stretchWarp, cloth.stretchWeft, cloth.poissonRatio, cloth.shear);
     StVenantKirchhoff<double>& law = membrane.orthotropic;
     const double limit = cloth.strainLimit;
@@ -307,8 +316,13 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
   const std::vector<Factors> factors = FindFactors(scene, model);
   const auto factorsOf = [&](std::size_t t) { return factors.empty() ? Factors() : factors[t]; };
   model.strength.clear();
+  model.stiffening.clear();
   model.strength.reserve(factors.size());
-  for (const Factors& factor : factors) model.strength.push_back(factor.stretch);
+  model.stiffening.reserve(factors.size());
+  for (const Factors& factor : factors) {
+    model.strength.push_back(factor.stretch);
+    model.stiffening.push_back(factor.bend);
+  }
   for (FabricHinge& hinge : model.hinges) {
     const auto x = [&](int k) { return From<double>(model.start[Index(hinge.vertex[k])]); };
     const bool flat = ClothOf(scene, model, hinge).restAngles == RestAngles::Flat;
@@ -366,15 +380,6 @@ void TakeMaterials(const Scene& scene, FabricModel& model) {
     model.firstHinge.assign(model.firstVertex.size(), 0);
     model.hingeOf = std::vector<std::array<std::int32_t, 3>>();
     model.hingeEnds = Lists();
-  }
-  model.buckling.assign(model.triangles.size() + kTrianglePad, 0);
-  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    const Triangle& tri = model.triangles[t];
-    const ClothSettings& cloth = scene.cloths[model.ClothOf(static_cast<std::int64_t>(t))];
-    const double mixed = std::sqrt(cloth.bendWarp * cloth.bendWeft) * factorsOf(t).bend;
-    const double mass = model.mass[Index(tri.a)] + model.mass[Index(tri.b)] + model.mass[Index(tri.c)];
-    const double area = model.Rest(t).area;
-    if (area > 0) model.buckling[t] = 2 * std::sqrt(mixed * mass / (6 * area)) / model.Strength(t);
   }
 }
 

@@ -39,7 +39,8 @@ struct Membrane {
   MembraneLaw kind = MembraneLaw::StVenantKirchhoff;
   StVenantKirchhoff<double> orthotropic;
   StableNeoHookean<double> neoHookean;
-  double damping = 0;  ///< Time constant of strain rates [s].
+  double damping = 0;        ///< Time constant of strain rates [s].
+  double bendStiffness = 0;  ///< Mean of the directions [N m].
 };
 
 struct FabricModel {
@@ -63,6 +64,7 @@ struct FabricModel {
   std::vector<Membrane> membranes;             ///< Per cloth.
   std::vector<double> strength;                ///< Per triangle: of its membrane over that of its cloth, by patches;
                                                ///< none without patches.
+  std::vector<double> stiffening;              ///< Likewise `bendStiffness` of its membrane.
   std::vector<double> pressure;                ///< Per cloth [Pa].
   std::vector<double> bendDamping;             ///< Per cloth [s].
   std::vector<BendingMatrix<double>> bending;  ///< Per triangle, for the angles of its three hinges [N m]; none
@@ -70,9 +72,6 @@ struct FabricModel {
   std::vector<std::uint8_t> plate;             ///< Per vertex: 1 where the cloth bends by BendingLaw::Quadratic.
   ScalarMatrix plates;                         ///< Bending of all cloths as a quadratic of the positions, each row
                                                ///< with an entry on the diagonal [N/m].
-  std::vector<double> buckling;                ///< Per triangle: a plate's buckling stress on its own inertia over a
-                                               ///< step, times the step, 2 sqrt(D rho), over `strength` [N s/m];
-                                               ///< with kTrianglePad more.
   std::vector<FabricTether> tethers;
   std::vector<FoldYield<double>> yield;  ///< Per hinge; none where no cloth's folds set.
   bool anyHinges = false;                ///< Whether any cloth bends by BendingLaw::Hinges.
@@ -91,6 +90,8 @@ struct FabricModel {
   }
   RestTriangle<double> Rest(std::size_t triangle) const;
   double Strength(std::size_t triangle) const { return strength.empty() ? 1 : strength[triangle]; }
+  /// BucklingStress over `strength` [N s/m].
+  double Buckling(std::size_t triangle) const;
 };
 
 /// `meshes`: one per cloth of the scene.

@@ -5,7 +5,8 @@ static_assert(kLanes <= kTrianglePad && kTrianglePad % kLanes == 0);
 
 /// kLanes triangles from `first` on. Where there are fewer the last stands in for what is missing.
 struct Triangles {
-  RestTriangle<Doubles> rest;
+  RestTriangle<Doubles> rest;  ///< Strength counts as so much more area.
+  Doubles flat, strength;      ///< The area alone, and the strength.
   DeformationGradient<Doubles> f;
 };
 
@@ -25,16 +26,23 @@ inline Edges LoadEdges(const Triangle* triangles, const Vec3* x, int first, int 
           {Doubles::Load(edge[3]), Doubles::Load(edge[4]), Doubles::Load(edge[5])}};
 }
 
-/// MakeRestTriangle, to the bit; strength counts as so much more area.
+/// A number per triangle, or one where there are none.
+inline Doubles LoadFactors(const double* factors, int first, int count) {
+  if (!factors) return Doubles(1);
+  alignas(64) double factor[kLanes];
+  for (int i = 0; i < kLanes; ++i) factor[i] = factors[first + (i < count ? i : count - 1)];
+  return Doubles::Load(factor);
+}
+
+/// MakeRestTriangle, to the bit.
 inline RestTriangle<Doubles> LoadRest(const MembraneArgs& a, int first, int count) {
-  alignas(64) double edge[4][kLanes], strength[kLanes];
+  alignas(64) double edge[4][kLanes];
   for (int i = 0; i < kLanes; ++i) {
     const int at = first + (i < count ? i : count - 1);
     const Triangle& t = a.chartTriangles[at];
     const Vec2 &p0 = a.chart[t.a], &p1 = a.chart[t.b], &p2 = a.chart[t.c];
     edge[0][i] = p1.x - p0.x, edge[1][i] = p1.y - p0.y;
     edge[2][i] = p2.x - p0.x, edge[3][i] = p2.y - p0.y;
-    strength[i] = a.strength ? a.strength[at] : 1;
   }
   const Doubles u1 = Doubles::Load(edge[0]), v1 = Doubles::Load(edge[1]);
   const Doubles u2 = Doubles::Load(edge[2]), v2 = Doubles::Load(edge[3]);
@@ -42,7 +50,7 @@ inline RestTriangle<Doubles> LoadRest(const MembraneArgs& a, int first, int coun
   const Doubles over = Doubles(1) / det, positive = Select(det > none, over, -over);
   constexpr double kBelowNormal = 0x1.ffffffffffffep-1023;
   const auto isNormal = Select(size > positive, positive, size) > Doubles(kBelowNormal);
-  return {Select(isNormal, Doubles(0.5) * size, none) * Doubles::Load(strength),
+  return {Select(isNormal, Doubles(0.5) * size, none),
           {Select(isNormal, v2 * over, none), Select(isNormal, -u2 * over, none), Select(isNormal, -v1 * over, none),
            Select(isNormal, u1 * over, none)}};
 }
@@ -51,6 +59,9 @@ inline Triangles LoadTriangles(const MembraneArgs& a, int first, int count) {
   const Edges edges = LoadEdges(a.triangles, a.x, first, count);
   Triangles triangles;
   triangles.rest = LoadRest(a, first, count);
+  triangles.flat = triangles.rest.area;
+  triangles.strength = LoadFactors(a.strength, first, count);
+  triangles.rest.area = triangles.flat * triangles.strength;
   triangles.f = Deformation(triangles.rest, Vector3<Doubles>{}, edges.first, edges.second);
   return triangles;
 }
@@ -76,6 +87,18 @@ inline MembraneDamping<Doubles> LoadDamping(const MembraneArgs& a, int first) {
   return {Doubles(a.damping),
           {Doubles::Load(a.startStrain[0] + first), Doubles::Load(a.startStrain[1] + first),
            Doubles::Load(a.startStrain[2] + first)}};
+}
+
+/// How much compression a second derivative may keep [N/m].
+inline Doubles LoadFloor(const MembraneArgs& a, const Triangles& triangles, int first, int count) {
+  alignas(64) double mass[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const Triangle& t = a.triangles[first + (i < count ? i : count - 1)];
+    mass[i] = a.mass[t.a] + a.mass[t.b] + a.mass[t.c];
+  }
+  const Doubles stiffness = Doubles(a.bendStiffness) * LoadFactors(a.stiffening, first, count);
+  const Doubles stress = BucklingStress(stiffness, Doubles::Load(mass), triangles.flat);
+  return (a.strength ? stress / triangles.strength : stress) * Doubles(a.compression);
 }
 
 inline Vector3<Floats> ToFloats(const Vector3<Doubles>& v) {
@@ -167,7 +190,7 @@ template <bool withTangent>
       const DeformationGradient<Floats> f{ToFloats(t.f.u), ToFloats(t.f.v)};
       const MembraneDamping<Floats> floatDamping{
           Floats(damping.rate), {Floats(damping.start.e11), Floats(damping.start.e22), Floats(damping.start.shear)}};
-      const Floats floor(Doubles::Load(a.buckling + first) * Doubles(a.compression));
+      const Floats floor(LoadFloor(a, t, first, count));
       const TriangleHessian<Floats> hessian = CornerHessian(rest, TangentOf(floatLaw, f, floor, floatDamping));
       Real blocks[27][kLanes];
       for (int k = 0; k < 3; ++k) {

@@ -36,8 +36,11 @@ struct MembraneArgs {
   StableNeoHookean<double> neoHookean;
   double damping;          ///< Time constant of strain rates over the length of the step; 0 for none.
   double* startStrain[3];  ///< Strain at the start of the step, one array per component; padded.
-  const double* buckling;  ///< Compression that a second derivative may keep, over `compression` [N s/m]; padded.
-  double compression;      ///< How often buckling, over the length of the step [1/s].
+  // A second derivative may keep so much compression: BucklingStress over `strength`, times `compression`.
+  const double* mass;        ///< Per vertex [kg].
+  double bendStiffness;      ///< Of the cloth [N m].
+  const double* stiffening;  ///< Of each, over that; or null: one.
+  double compression;        ///< How often the stress, over the length of the step [1/s].
   // Out, for triangles from `outFirst` on:
   int outFirst;
   Vec3* gradient;  ///< By corner a, b, c of each triangle [N].

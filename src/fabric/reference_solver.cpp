@@ -95,7 +95,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     const TriangleGradient<double> g = CornerGradient(rest, stress);
     for (int k = 0; k < 3; ++k) addGradient(corners[k], g.corner[k]);
     if (addBlock) {
-      const double floor = step_.h > 0 ? floorShare * model_.buckling[t] * perStep : std::numeric_limits<double>::max();
+      const double floor = step_.h > 0 ? floorShare * model_.Buckling(t) * perStep : std::numeric_limits<double>::max();
       const TriangleHessian<double> h = CornerHessian(
           rest, rubber ? Tangent(membrane.neoHookean, f, floor) : Tangent(membrane.orthotropic, f, floor, damping));
       for (int k = 0; k < 3; ++k) {

@@ -499,6 +499,11 @@ void SpringsEngine::ReadState(int cloth, std::span<Vec3> positions, std::span<Ve
   }
 }
 
+std::span<const Vec3> SpringsEngine::Start(int cloth) const {
+  const Sheet& sheet = sheets_[Index(cloth)];
+  return std::span(start_).subspan(Index(sheet.firstPoint), Index(sheet.PointCount()));
+}
+
 void SpringsEngine::ReadAnchors(int cloth, std::vector<Vec3>& anchors) const {
   pins_.ReadAnchors(Index(cloth), anchors);
 }

@@ -99,6 +99,8 @@ class SpringsEngine {
   /// shorter than at rest [J].
   double ElasticEnergy() const;
   std::span<const double> Masses(int cloth) const { return sheets_[static_cast<std::size_t>(cloth)].masses; }
+  /// Where its points started [m]; stays valid as long as the engine.
+  std::span<const Vec3> Start(int cloth) const;
   /// The first point with a coordinate out of bounds.
   VertexRef FindOutOfBounds() const;
 

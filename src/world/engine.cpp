@@ -40,6 +40,7 @@ constexpr EngineTable CommonTable() {
   table.greatestStretch = [](const void* e) { return Self<E>(e).GreatestStretch(); };
   table.elasticEnergy = [](void* e) { return Self<E>(e).ElasticEnergy(); };
   table.masses = [](const void* e, int cloth) { return Self<E>(e).Masses(cloth); };
+  table.start = [](const void* e, int cloth) { return Self<E>(e).Start(cloth); };
   table.findOutOfBounds = [](const void* e) { return Self<E>(e).FindOutOfBounds(); };
   table.takeCounts = [](void* e) { return Self<E>(e).TakeCounts(); };
   return table;
@@ -83,6 +84,7 @@ constexpr EngineTable FabricTable() {
   };
   table.solve = [](void* e) { Self<FabricEngine>(e).Solve(); };
   table.selfCollide = [](void* e) { Self<FabricEngine>(e).Move(); };
+  table.triangles = [](const void* e, int cloth) { return Self<FabricEngine>(e).Triangles(cloth); };
   table.readFolds = [](const void* e, int cloth, std::vector<Fold>& folds) {
     Self<FabricEngine>(e).ReadFolds(cloth, folds);
   };

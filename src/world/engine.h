@@ -57,6 +57,12 @@ struct EngineTable {
   Stretch (*greatestStretch)(const void*) = nullptr;
   double (*elasticEnergy)(void*) = nullptr;                             ///< [J]
   std::span<const double> (*masses)(const void*, int cloth) = nullptr;  ///< Of its vertices [kg].
+  /// Where a cloth's vertices started [m]. The span stays valid as long as the engine's state.
+  std::span<const Vec3> (*start)(const void*, int cloth) = nullptr;
+  /// Likewise the cloth's triangles, by numbers of vertices over all cloths; none where the engine has no use for them.
+  std::span<const Triangle> (*triangles)(const void*, int cloth) = [](const void*, int) {
+    return std::span<const Triangle>();
+  };
   VertexRef (*findOutOfBounds)(const void*) = nullptr;
   EngineCounts (*takeCounts)(void*) = nullptr;  ///< Since the last call.
 };

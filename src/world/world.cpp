@@ -49,15 +49,11 @@ bool SameCloths(const Scene& a, const Scene& b) {
   return EffectOf(a, b) != Effect::Rebuild;
 }
 
+/// Engine::Fabric makes its own, and has no use for texture coordinates.
 ClothModel MakeModel(const ClothSettings& settings, Engine engine) {
   if (engine == Engine::Springs) return MakeGrid(settings);
-  RestMesh mesh = MakeClothMesh(settings);
   ClothModel model;
-  if (settings.shape == Shape::Grid)
-    model.numWidth = settings.numWidthPoints, model.numHeight = settings.numHeightPoints;
-  model.start = std::move(mesh.positions);
-  model.uv = std::move(mesh.uv);
-  model.triangles = std::move(mesh.triangles);
+  model.uv = MakeClothMesh(settings).uv;
   return model;
 }
 
@@ -130,9 +126,16 @@ struct World::Impl {
   bool AskForces();
   void ReadState();
   void FinishStep();
+  std::span<const Vec3> StartOf(std::size_t cloth) const {
+    return engine->start(engineState.get(), static_cast<int>(cloth));
+  }
+  std::span<const Triangle> EngineTrianglesOf(std::size_t cloth) const {
+    return engine->triangles(engineState.get(), static_cast<int>(cloth));
+  }
 
   struct Cloth {
-    ClothModel model;
+    std::vector<Vec2> uv;
+    std::vector<Triangle> triangles;  // none where the engine's name vertices by the same numbers
     std::unique_ptr<const ClothSprings> springs;
     std::vector<std::int32_t> pinned;  // ascending
     std::vector<Vec3> positions, previous, velocities;
@@ -165,7 +168,17 @@ void World::Impl::Build() {
   }
   engine = &FindEngine(scene->simulation.engine);
   engineState = engine->create(*scene, models, executor);
-  for (std::size_t c = 0; c < models.size(); ++c) cloths[c].model = std::move(models[c]);
+  std::int32_t first = 0;
+  for (std::size_t c = 0; c < models.size(); ++c) {
+    cloths[c].uv = std::move(models[c].uv);
+    cloths[c].triangles = std::move(models[c].triangles);
+    if (first > 0) {
+      const std::span<const Triangle> numbered = EngineTrianglesOf(c);
+      cloths[c].triangles.reserve(numbered.size());
+      for (const Triangle& t : numbered) cloths[c].triangles.push_back({t.a - first, t.b - first, t.c - first});
+    }
+    first += static_cast<std::int32_t>(StartOf(c).size());
+  }
   Start();
 }
 
@@ -181,8 +194,11 @@ void World::Impl::Configure(std::shared_ptr<const Scene> changed) {
 
 /// What the reader sees before the first frame.
 void World::Impl::Start() {
-  for (Cloth& cloth : cloths) {
-    cloth.positions = cloth.previous = cloth.model.start;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    Cloth& cloth = cloths[c];
+    const std::span<const Vec3> start = StartOf(c);
+    cloth.positions.assign(start.begin(), start.end());
+    cloth.previous = cloth.positions;
     cloth.velocities.assign(cloth.positions.size(), Vec3{});
   }
   report = {};
@@ -350,7 +366,8 @@ bool World::Apply(Scene scene) {
 void World::SetHandles(std::vector<Handle> handles) {
   for ([[maybe_unused]] const Handle& handle : handles) {
     assert(handle.cloth >= 0 && handle.cloth < ClothCount() && handle.vertex >= 0);
-    assert(handle.vertex < impl_->cloths[static_cast<std::size_t>(handle.cloth)].model.PointCount());
+    assert(static_cast<std::size_t>(handle.vertex) <
+           impl_->cloths[static_cast<std::size_t>(handle.cloth)].positions.size());
     assert(!Check(handle));
   }
   impl_->handles = std::move(handles);
@@ -461,13 +478,14 @@ int World::ClothCount() const {
 
 ClothView World::Cloth(int index) const {
   assert(index >= 0 && index < ClothCount());
-  const Impl::Cloth& cloth = impl_->cloths[static_cast<std::size_t>(index)];
+  const auto c = static_cast<std::size_t>(index);
+  const Impl::Cloth& cloth = impl_->cloths[c];
   ClothView view;
   view.positions_ = cloth.positions;
-  view.rest_ = cloth.model.start;
+  view.rest_ = impl_->StartOf(c);
   view.velocities_ = cloth.velocities;
-  view.uv_ = cloth.model.uv;
-  view.triangles_ = cloth.model.triangles;
+  view.uv_ = cloth.uv;
+  view.triangles_ = cloth.triangles.empty() ? impl_->EngineTrianglesOf(c) : cloth.triangles;
   view.springs_ = cloth.springs.get();
   view.pinned_ = cloth.pinned;
   return view;

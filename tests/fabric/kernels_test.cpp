@@ -27,7 +27,7 @@ std::size_t Index(std::int64_t i) {
 struct Triangles {
   explicit Triangles(int count) {
     const auto unit = [&] { return 2 * random.NextUnit() - 1; };
-    for (int v = 0; v < 12; ++v) x.push_back({unit(), unit(), unit()});
+    for (int v = 0; v < 12; ++v) x.push_back({unit(), unit(), unit()}), mass.push_back(random.NextUnit());
     for (int t = 0; t < count; ++t) {
       const auto vertex = [&] { return static_cast<std::int32_t>(random.Next() % x.size()); };
       const std::int32_t a = vertex();
@@ -41,10 +41,10 @@ struct Triangles {
       rest.back().area *= strength.back();
     }
     const std::size_t padded = Index(count + kTrianglePad);
-    for (std::vector<double>* array : {&start[0], &start[1], &start[2], &buckling}) array->assign(padded, 0);
+    for (std::vector<double>* array : {&start[0], &start[1], &start[2]}) array->assign(padded, 0);
     for (std::size_t t = 0; t < rest.size(); ++t) {
       for (std::vector<double>& strain : start) strain[t] = 0.1 * unit();
-      buckling[t] = random.NextUnit();
+      stiffening.push_back(random.NextUnit());
     }
     gradient.assign(3 * rest.size(), {7, 7, 7});
     hessian.assign(kHessianReals * rest.size(), 7);
@@ -63,7 +63,9 @@ struct Triangles {
             .neoHookean = neoHookean,
             .damping = damping,
             .startStrain = {start[0].data(), start[1].data(), start[2].data()},
-            .buckling = buckling.data(),
+            .mass = mass.data(),
+            .bendStiffness = 3,
+            .stiffening = stiffening.data(),
             .compression = 90,
             .outFirst = 0,
             .gradient = gradient.data(),
@@ -74,13 +76,19 @@ struct Triangles {
     return Deformation(rest[t], at(triangles[t].a), at(triangles[t].b), at(triangles[t].c));
   }
 
+  double Buckling(std::size_t t) const {
+    const double weight = mass[Index(triangles[t].a)] + mass[Index(triangles[t].b)] + mass[Index(triangles[t].c)];
+    const double area = rest[t].area / strength[t];
+    return area > 0 ? 2 * std::sqrt(3 * stiffening[t] * weight / (6 * area)) / strength[t] : 0;
+  }
+
   SplitMix64 random{5};
   std::vector<Vec3> x;
   std::vector<Triangle> triangles;
   std::vector<RestTriangle<double>> rest;  // area times strength
   std::vector<Triangle> chartTriangles;
   std::vector<Vec2> chart;
-  std::vector<double> strength, start[3], buckling;
+  std::vector<double> strength, start[3], mass, stiffening;
   StVenantKirchhoff<double> orthotropic{300, 60, 200, 100, 0.2, 0.3, 1000, 2000};
   StableNeoHookean<double> neoHookean = NeoHookeanMembrane(261, 0.24);
   std::vector<Vec3> gradient;
@@ -122,7 +130,7 @@ TEST_CASE("the membrane's kernels agree with the law, triangle by triangle, and 
               expectedEnergy += s.rest[t].area * stress.energy;
               const TriangleGradient<double> g = CornerGradient(s.rest[t], stress);
               const TriangleHessian<double> h =
-                  CornerHessian(s.rest[t], Tangent(of, f, s.buckling[t] * arguments.compression, damped...));
+                  CornerHessian(s.rest[t], Tangent(of, f, s.Buckling(t) * arguments.compression, damped...));
               // Without a normal any will do, and the law's second derivative depends on it.
               const Vector3<double> cross = Cross(f.u, f.v);
               const bool sameTangent = law != MembraneLaw::NeoHookean || Dot(cross, cross) > 1e-4;

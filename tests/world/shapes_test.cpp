@@ -101,6 +101,40 @@ TEST_CASE("A world runs cloths of every shape, and shows them as they are") {
   CHECK(world.StateHash() == hash);
 }
 
+TEST_CASE("Each cloth shows where it started and its own triangles, whatever happens to it") {
+  for (const Engine engine : {Engine::Springs, Engine::Fabric}) {
+    CAPTURE(static_cast<int>(engine));
+    Scene scene = Fabric(Shape::Grid);
+    scene.simulation.engine = engine;
+    scene.cloths.push_back(scene.cloths[0]);
+    scene.cloths[1].numWidthPoints = 7;
+    scene.cloths[1].origin.y += 1;
+    if (engine == Engine::Fabric) scene.cloths.push_back(MeshScene().cloths[0]);
+    World world(scene);
+    const auto check = [&] {
+      for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+        const RestMesh mesh = MakeClothMesh(scene.cloths[c]);
+        const ClothView cloth = world.Cloth(static_cast<int>(c));
+        CHECK(std::vector(cloth.rest().begin(), cloth.rest().end()) == mesh.positions);
+        CHECK(std::vector(cloth.triangles().begin(), cloth.triangles().end()) == mesh.triangles);
+      }
+    };
+    check();
+    for (int frame = 0; frame < 3; ++frame) world.Step();
+    check();
+    scene.simulation.gravity.y = -5;
+    CHECK(world.Apply(scene));
+    world.Step();
+    check();
+    std::swap(scene.cloths[0], scene.cloths[1]);
+    CHECK_FALSE(world.Apply(scene));
+    check();
+    CHECK(world.Cloth(0).positions()[3] == world.Cloth(0).rest()[3]);
+    const World moved = std::move(world);
+    CHECK(moved.Cloth(1).rest()[3] == MakeClothMesh(scene.cloths[1]).positions[3]);
+  }
+}
+
 TEST_CASE("Lengths at rest are those of the flat fabric, wherever the cloth starts") {
   // A disc that starts half as large as it was cut.
   Scene scene = MeshScene();
@@ -178,7 +212,9 @@ TEST_CASE("Patches change the material where they lie, and several multiply") {
     Patch patch;
     patch.stretch = 3, patch.bend = 100, patch.density = 2;
     scene.patches = {patch};
-    CHECK(Mass(Model(scene)) == doctest::Approx(2 * mass));
+    fabric::FabricModel whole = Model(scene);
+    CHECK(Mass(whole) == doctest::Approx(2 * mass));
+    CHECK(whole.Buckling(20) == doctest::Approx(std::sqrt(100 * 2) / 3 * plain.Buckling(20)).epsilon(1e-9));
     if (mesh)
       patch.group = "middle";
     else
@@ -204,7 +240,8 @@ TEST_CASE("Patches change the material where they lie, and several multiply") {
     fabric::TakeMaterials(scene, model);
     CHECK(model.mass == plain.mass);
     CHECK(model.strength == plain.strength);
-    CHECK(model.buckling == plain.buckling);
+    CHECK(model.stiffening == plain.stiffening);
+    for (std::size_t t = 0; t < model.triangles.size(); ++t) CHECK(model.Buckling(t) == plain.Buckling(t));
   }
 }
 

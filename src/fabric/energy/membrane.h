@@ -60,6 +60,13 @@ struct MembraneTangent {
   Matrix3<T> uu, uv, vv;
 };
 
+/// Stress at which a plate buckles on its own inertia over a step, times the step: 2 sqrt(D rho) [N s/m]; 0 without
+/// area. `stiffness`: D [N m]. `mass`: of a triangle's three corners, each of which has about two triangles [kg].
+template <class T>
+T BucklingStress(T stiffness, T mass, T area) {
+  return Select(area > T{}, T(2) * Sqrt(stiffness * mass / (T(6) * area)), T{});
+}
+
 // --- Orthotropic St. Venant-Kirchhoff ---
 
 /// W = ½ (c11 E11² + 2 c12 E11 E22 + c22 E22² + c33 γ²), with E11 = (fu·fu - 1)/2, E22 likewise and γ = fu·fv; beyond
