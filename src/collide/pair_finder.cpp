@@ -173,7 +173,7 @@ struct PairFinder::Impl {
   const int chunks;
   // Per leaf that is touched: of its edges, then come its triangles and its own vertices.
   std::vector<std::int32_t> firstItemBlock;
-  AlignedVector<BoxRow> rows;                   // per vertex
+  AlignedVector<BoxRow> rows;                   // per vertex, and one more
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
   std::vector<LeafShape> shapes;          // per leaf
@@ -196,7 +196,7 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       chunkBlocks(std::max(kLeastChunkBlocks, (leafBlocks + kMostChunks - 1) / kMostChunks)),
       chunks((leafBlocks + chunkBlocks - 1) / chunkBlocks),
       firstItemBlock(Index(clusters.leaves())),
-      rows(m.body.size()),
+      rows(m.body.size() + 1),
       shapes(Index(clusters.clothLeaves)),
       areAllApart(Index(clusters.clothLeaves)),
       isTouched(Index(clusters.leaves())),
