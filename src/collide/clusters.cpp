@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
+
+#include "collide/contact_mesh.h"
 
 namespace percale {
 namespace {
@@ -119,70 +122,110 @@ std::vector<Item> MakeItems(const ContactMesh& mesh, const EdgeMap& edgeMap) {
   return items;
 }
 
-}  // namespace
+/// Adds leaf after leaf to the clusters of a mesh.
+class LeafAdder {
+ public:
+  LeafAdder(ContactMesh& mesh, const EdgeMap& edgeMap)
+      : mesh_(mesh),
+        edgeMap_(edgeMap),
+        vertexOwned_(Index(mesh.vertices()), 0),
+        edgeOwned_(mesh.edges.size(), 0),
+        listed_(Index(mesh.vertices()), -1) {
+    mesh.clusters = {};
+    mesh.clusters.vertexFirst = mesh.clusters.edgeFirst = mesh.clusters.triangleFirst = {0};
+    edges_.reserve(mesh.edges.size());
+  }
 
-Clusters MakeClusters(const ContactMesh& mesh) {
+  /// Of one body. Its triangles overwrite those of the mesh: items have them all.
+  void Add(std::span<const Item> leaf) {
+    Clusters& clusters = mesh_.clusters;
+    ListVertices(leaf, true);
+    clusters.ownVertices.push_back(static_cast<std::int32_t>(clusters.vertices.size()) - clusters.vertexFirst.back());
+    ListVertices(leaf, false);
+    std::int32_t triangles = clusters.triangleFirst.back();
+    for (const Item& item : leaf) {
+      const auto [a, b, c] = item.corners;
+      if (c >= 0) mesh_.triangles[Index(triangles++)] = {a, b, c};
+      for (const Edge& side : {Edge{a, b}, Edge{b, c}, Edge{c, a}}) TakeEdge(side);
+    }
+    clusters.vertexFirst.push_back(static_cast<std::int32_t>(clusters.vertices.size()));
+    clusters.edgeFirst.push_back(static_cast<std::int32_t>(edges_.size()));
+    clusters.triangleFirst.push_back(triangles);
+    clusters.body.push_back(mesh_.body[Index(leaf[0].corners[0])]);
+    const bool hasOnlyTriangles =
+        std::all_of(leaf.begin(), leaf.end(), [](const Item& item) { return item.corners[2] >= 0; });
+    clusters.hasOnlyTriangles.push_back(hasOnlyTriangles ? 1 : 0);
+    if (clusters.body.back() < mesh_.clothBodies) ++clusters.clothLeaves;
+  }
+
+  /// The mesh's edges, leaf by leaf, when all leaves are added.
+  std::vector<Edge> TakeEdges() { return std::move(edges_); }
+
+ private:
+  /// Those that are to be its own, or the others.
+  void ListVertices(std::span<const Item> leaf, bool own) {
+    const auto number = static_cast<std::int32_t>(mesh_.clusters.body.size());
+    for (const Item& item : leaf) {
+      for (const std::int32_t v : item.corners) {
+        if (v < 0 || listed_[Index(v)] == number || (own && vertexOwned_[Index(v)])) continue;
+        mesh_.clusters.vertices.push_back(v);
+        listed_[Index(v)] = number;
+        vertexOwned_[Index(v)] = 1;
+      }
+    }
+  }
+  void TakeEdge(const Edge& side) {
+    const std::int32_t e = side.a < 0 || side.b < 0 ? -1 : edgeMap_.Find(side.a, side.b);
+    if (e < 0 || edgeOwned_[Index(e)]) return;
+    edgeOwned_[Index(e)] = 1;
+    edges_.push_back(mesh_.edges[Index(e)]);
+  }
+
+  ContactMesh& mesh_;
+  const EdgeMap& edgeMap_;
+  std::vector<Edge> edges_;
+  std::vector<char> vertexOwned_, edgeOwned_;
+  std::vector<std::int32_t> listed_;  // per vertex, the last leaf that lists it
+};
+
+/// Makes the clusters, and sorts the triangles. Returns the edges as sorted.
+std::vector<Edge> AddLeaves(ContactMesh& mesh) {
   const EdgeMap edgeMap(mesh);
   std::vector<Item> items = MakeItems(mesh, edgeMap);
   const auto bodyOf = [&](const Item& item) { return mesh.body[Index(item.corners[0])]; };
   const auto before = [&](const Item& a, const Item& b) { return bodyOf(a) < bodyOf(b); };
   if (!std::is_sorted(items.begin(), items.end(), before)) std::stable_sort(items.begin(), items.end(), before);
 
-  Clusters clusters;
-  std::vector<char> vertexOwned(Index(mesh.vertices()), 0), edgeOwned(mesh.edges.size(), 0);
-  std::vector<std::int32_t> listed(Index(mesh.vertices()), -1);  // per vertex, the last leaf that lists it
-  clusters.vertexFirst = clusters.edgeFirst = clusters.triangleFirst = {0};
-  const auto addLeaf = [&](std::span<const Item> leaf) {
-    const auto number = static_cast<std::int32_t>(clusters.body.size());
-    const auto list = [&](bool owned) {
-      for (const Item& item : leaf) {
-        for (const std::int32_t v : item.corners) {
-          if (v < 0 || listed[Index(v)] == number || (owned && vertexOwned[Index(v)])) continue;
-          clusters.vertices.push_back(v);
-          listed[Index(v)] = number;
-          vertexOwned[Index(v)] = 1;
-        }
-      }
-    };
-    list(true);
-    clusters.ownVertices.push_back(static_cast<std::int32_t>(clusters.vertices.size()) - clusters.vertexFirst.back());
-    list(false);
-    for (const Item& item : leaf) {
-      const auto [a, b, c] = item.corners;
-      if (c >= 0) clusters.triangles.push_back({a, b, c});
-      for (const Edge& side : {Edge{a, b}, Edge{b, c}, Edge{c, a}}) {
-        const std::int32_t e = side.a < 0 || side.b < 0 ? -1 : edgeMap.Find(side.a, side.b);
-        if (e < 0 || edgeOwned[Index(e)]) continue;
-        edgeOwned[Index(e)] = 1;
-        clusters.edges.push_back(mesh.edges[Index(e)]);
-      }
-    }
-    clusters.vertexFirst.push_back(static_cast<std::int32_t>(clusters.vertices.size()));
-    clusters.edgeFirst.push_back(static_cast<std::int32_t>(clusters.edges.size()));
-    clusters.triangleFirst.push_back(static_cast<std::int32_t>(clusters.triangles.size()));
-    clusters.body.push_back(bodyOf(leaf[0]));
-    const bool hasOnlyTriangles =
-        std::all_of(leaf.begin(), leaf.end(), [](const Item& item) { return item.corners[2] >= 0; });
-    clusters.hasOnlyTriangles.push_back(hasOnlyTriangles ? 1 : 0);
-    if (clusters.body.back() < mesh.clothBodies) ++clusters.clothLeaves;
-  };
+  LeafAdder adder(mesh, edgeMap);
   for (auto begin = items.begin(); begin != items.end();) {
     const auto end = std::find_if(begin, items.end(), [&](const Item& item) { return bodyOf(item) != bodyOf(*begin); });
     const std::span<Item> body(begin, end);
     Cut(body);
     for (std::size_t i = 0; i < body.size(); i += kLeafItems) {
-      addLeaf(body.subspan(i, std::min(kLeafItems, body.size() - i)));
+      adder.Add(body.subspan(i, std::min(kLeafItems, body.size() - i)));
     }
     begin = end;
   }
-  assert(clusters.edges.size() == mesh.edges.size());
-  return clusters;
+  return adder.TakeEdges();
+}
+
+}  // namespace
+
+ContactMesh Clustered(ContactMesh mesh) {
+  std::vector<Edge> edges = AddLeaves(mesh);
+  assert(edges.size() == mesh.edges.size());
+  mesh.edges = std::move(edges);
+  const auto trim = [](auto&... all) { (all.shrink_to_fit(), ...); };
+  Clusters& c = mesh.clusters;
+  trim(mesh.body, mesh.place, mesh.edges, mesh.triangles);
+  trim(c.body, c.hasOnlyTriangles, c.vertexFirst, c.vertices, c.ownVertices, c.edgeFirst, c.triangleFirst);
+  return mesh;
 }
 
 std::size_t Clusters::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   return bytes(body) + bytes(hasOnlyTriangles) + bytes(vertexFirst) + bytes(vertices) + bytes(ownVertices) +
-         bytes(edgeFirst) + bytes(edges) + bytes(triangleFirst) + bytes(triangles);
+         bytes(edgeFirst) + bytes(triangleFirst);
 }
 
 }  // namespace percale

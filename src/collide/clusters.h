@@ -1,14 +1,20 @@
 #pragma once
 /// \file
-/// A mesh in leaves of a few triangles each, built once: neighbours share a leaf, or have leaves near each other.
+/// How a mesh is cut into leaves of a few triangles each: neighbours share a leaf, or have leaves near each other.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "collide/contact_mesh.h"
-
 namespace percale {
+
+/// Of all things those of a leaf: at [first[leaf], first[leaf + 1]).
+template <class T>
+std::span<const T> LeafPart(const std::vector<T>& all, const std::vector<std::int32_t>& first, int leaf) {
+  const std::int32_t begin = first[static_cast<std::size_t>(leaf)], end = first[static_cast<std::size_t>(leaf) + 1];
+  return {all.data() + begin, static_cast<std::size_t>(end - begin)};
+}
 
 /// An item is a triangle, an edge without triangles or a vertex without edges. The items of a body are cut in two along
 /// the longest axis again and again; what is left are its leaves. Each vertex and each edge belongs to the first leaf
@@ -22,29 +28,21 @@ struct Clusters {
   std::vector<std::int32_t> vertexFirst;    ///< Leaf l has the vertices at [vertexFirst[l], vertexFirst[l + 1]) of ...
   std::vector<std::int32_t> vertices;       ///< ... these: first its own, then others of its triangles.
   std::vector<std::int32_t> ownVertices;    ///< Per leaf, how many are its own.
-  std::vector<std::int32_t> edgeFirst;      ///< Likewise, of ...
-  std::vector<Edge> edges;                  ///< ... these, as the mesh has them.
-  std::vector<std::int32_t> triangleFirst;  ///< Likewise, of ...
-  std::vector<Triangle> triangles;          ///< ... these, as the mesh has them.
+  std::vector<std::int32_t> edgeFirst;      ///< Leaf l has the mesh's edges at [edgeFirst[l], edgeFirst[l + 1]).
+  std::vector<std::int32_t> triangleFirst;  ///< Likewise its triangles.
 
   int leaves() const { return static_cast<int>(body.size()); }
-  std::span<const std::int32_t> Vertices(int leaf) const { return Part(vertices, vertexFirst, leaf); }
+  std::span<const std::int32_t> Vertices(int leaf) const { return LeafPart(vertices, vertexFirst, leaf); }
   std::span<const std::int32_t> OwnVertices(int leaf) const {
     return Vertices(leaf).first(static_cast<std::size_t>(ownVertices[static_cast<std::size_t>(leaf)]));
   }
-  std::span<const Edge> Edges(int leaf) const { return Part(edges, edgeFirst, leaf); }
-  std::span<const Triangle> Triangles(int leaf) const { return Part(triangles, triangleFirst, leaf); }
   std::size_t MemoryBytes() const;
-
- private:
-  template <class T>
-  static std::span<const T> Part(const std::vector<T>& all, const std::vector<std::int32_t>& first, int leaf) {
-    const std::int32_t begin = first[static_cast<std::size_t>(leaf)], end = first[static_cast<std::size_t>(leaf) + 1];
-    return {all.data() + begin, static_cast<std::size_t>(end - begin)};
-  }
 };
 
+struct ContactMesh;
+
+/// The same mesh with its clusters: its edges and triangles are sorted leaf by leaf, and no array has room to spare.
 /// Takes time in proportion to n log n.
-Clusters MakeClusters(const ContactMesh& mesh);
+ContactMesh Clustered(ContactMesh mesh);
 
 }  // namespace percale

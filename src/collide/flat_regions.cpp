@@ -126,11 +126,11 @@ void Clip(Polygon& polygon, const std::vector<HalfPlane>& planes, Polygon& scrat
 /// What regions are made from, and scratch.
 class Builder {
  public:
-  Builder(const ContactMesh& mesh, const Clusters& clusters);
+  explicit Builder(const ContactMesh& mesh);
   FlatRegions Make();
 
  private:
-  const Triangle& At(std::int32_t t) const { return clusters_.triangles[Index(t)]; }
+  const Triangle& At(std::int32_t t) const { return mesh_.triangles[Index(t)]; }
   Vec2 Place(std::int32_t vertex, int axis) const {
     const Vec3& p = mesh_.place[Index(vertex)];
     return axis == 0 ? Vec2{p.y, p.z} : axis == 1 ? Vec2{p.z, p.x} : Vec2{p.x, p.y};
@@ -170,38 +170,44 @@ class Builder {
   std::int32_t pair_ = 0;
 };
 
-Builder::Builder(const ContactMesh& mesh, const Clusters& clusters) : mesh_(mesh), clusters_(clusters) {
-  for (std::int32_t leaf = 0; leaf < clusters.leaves(); ++leaf) {
-    leafOf_.insert(leafOf_.end(), clusters.Triangles(leaf).size(), leaf);
+Builder::Builder(const ContactMesh& mesh) : mesh_(mesh), clusters_(mesh.clusters) {
+  leafOf_.reserve(mesh.triangles.size());
+  area_.reserve(mesh.triangles.size());
+  for (std::int32_t leaf = 0; leaf < clusters_.leaves(); ++leaf) {
+    leafOf_.insert(leafOf_.end(), mesh.Triangles(leaf).size(), leaf);
   }
-  seen_.assign(clusters.triangles.size(), -1);
+  seen_.assign(mesh.triangles.size(), -1);
 }
 
 /// Triangles that run a common edge in opposite ways, and no others have it.
 void Builder::FindNeighbours() {
   struct Side {
-    std::int32_t low, high, triangle, side;
-    bool forth;
+    std::int32_t low, high, number;  // as Topology has numbers
+  };
+  const auto from = [&](std::int32_t number) {
+    const Triangle& t = At(number / 3);
+    return number % 3 == 0 ? t.a : number % 3 == 1 ? t.b : t.c;
   };
   std::vector<Side> sides;
-  sides.reserve(3 * clusters_.triangles.size());
-  for (std::size_t t = 0; t < clusters_.triangles.size(); ++t) {
-    const std::int32_t v[] = {clusters_.triangles[t].a, clusters_.triangles[t].b, clusters_.triangles[t].c};
+  sides.reserve(3 * mesh_.triangles.size());
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    const auto number = static_cast<std::int32_t>(3 * t);
+    const std::int32_t v[] = {from(number), from(number + 1), from(number + 2)};
     for (std::int32_t k = 0; k < 3; ++k) {
-      const std::int32_t from = v[k], to = v[(k + 1) % 3];
-      sides.push_back({std::min(from, to), std::max(from, to), static_cast<std::int32_t>(t), k, from < to});
+      const auto [low, high] = std::minmax(v[k], v[(k + 1) % 3]);
+      sides.push_back({low, high, number + k});
     }
   }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::array{a.low, a.high, a.triangle} < std::array{b.low, b.high, b.triangle};
+    return std::array{a.low, a.high, a.number} < std::array{b.low, b.high, b.number};
   });
-  neighbours_.assign(clusters_.triangles.size(), {-1, -1, -1});
+  neighbours_.assign(mesh_.triangles.size(), {-1, -1, -1});
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
-    const Side &one = sides[begin], &other = sides[end - 1];
-    if (end - begin != 2 || one.forth == other.forth) continue;
-    neighbours_[Index(one.triangle)][Index(one.side)] = other.triangle;
-    neighbours_[Index(other.triangle)][Index(other.side)] = one.triangle;
+    const std::int32_t one = sides[begin].number, other = sides[end - 1].number;
+    if (end - begin != 2 || from(one) == from(other)) continue;
+    neighbours_[Index(one / 3)][Index(one % 3)] = other / 3;
+    neighbours_[Index(other / 3)][Index(other % 3)] = one / 3;
   }
 }
 
@@ -340,7 +346,7 @@ void Builder::AddRegion(std::int32_t a, std::int32_t b) {
     }
   }
   // It is covered once, and by what hangs together with both.
-  const std::size_t triangles = clusters_.Triangles(a).size() + (a == b ? 0 : clusters_.Triangles(b).size());
+  const std::size_t triangles = mesh_.Triangles(a).size() + (a == b ? 0 : mesh_.Triangles(b).size());
   if (inLeaves != triangles || !(std::abs(covered - hullArea) <= kAreaError * hullArea)) return;
   Unite(leaves_);
   regions_.other.push_back(b);
@@ -374,6 +380,10 @@ FlatRegions Builder::Make() {
     }
     AddAround(leaf);
   }
+  const auto trim = [](auto&... all) { (all.shrink_to_fit(), ...); };
+  trim(regions_.inverse, regions_.inverseFirst, regions_.greatestSlope, regions_.first, regions_.other);
+  trim(regions_.altitude, regions_.regionFirst, regions_.region, regions_.aroundFirst, regions_.around);
+  trim(regions_.aroundAltitude);
   return std::move(regions_);
 }
 
@@ -439,8 +449,8 @@ std::size_t FlatRegions::MemoryBytes() const {
          bytes(regionFirst) + bytes(region) + bytes(aroundFirst) + bytes(around) + bytes(aroundAltitude);
 }
 
-FlatRegions MakeFlatRegions(const ContactMesh& mesh, const Clusters& clusters) {
-  return Builder(mesh, clusters).Make();
+FlatRegions MakeFlatRegions(const ContactMesh& mesh) {
+  return Builder(mesh).Make();
 }
 
 }  // namespace percale

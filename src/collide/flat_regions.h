@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "collide/clusters.h"
 #include "collide/contact_mesh.h"
 #include "collide/kernels.h"
 
@@ -53,6 +52,7 @@ struct FlatRegions {
   std::size_t MemoryBytes() const;
 };
 
-FlatRegions MakeFlatRegions(const ContactMesh& mesh, const Clusters& clusters);
+/// The mesh has its clusters.
+FlatRegions MakeFlatRegions(const ContactMesh& mesh);
 
 }  // namespace percale

@@ -3,9 +3,6 @@
 
 constexpr float kInfinity = INFINITY;
 
-inline Floats Min(Floats a, Floats b) {
-  return Select(b > a, a, b);
-}
 inline Floats Max(Floats a, Floats b) {
   return Select(a > b, a, b);
 }
@@ -15,44 +12,31 @@ inline Floats Abs(Floats a) {
 
 /// A box that grows.
 struct Row {
-  Floats low[2], high[2];
+  Floats extent[3];  // four numbers each, as BoxRow has them
 
   static Row Load(const BoxRow& from) {
     Row row;
-    for (int i = 0; i < 2; ++i) {
-      row.low[i] = Floats::Load(from.low[i]);
-      row.high[i] = Floats::Load(from.high[i]);
-    }
+    for (int i = 0; i < 3; ++i) row.extent[i] = Floats::Load(from.extent + 4 * i);
     return row;
   }
   static Row Empty() {
     Row row;
-    for (int i = 0; i < 2; ++i) {
-      row.low[i] = Floats(kInfinity);
-      row.high[i] = Floats(-kInfinity);
-    }
+    for (int i = 0; i < 3; ++i) row.extent[i] = Floats(-kInfinity);
     return row;
   }
   void Add(const Row& o) {
-    for (int i = 0; i < 2; ++i) {
-      low[i] = Min(low[i], o.low[i]);
-      high[i] = Max(high[i], o.high[i]);
-    }
-  }
-  void Store(BoxRow& to) const {
-    for (int i = 0; i < 2; ++i) {
-      low[i].Store(to.low[i]);
-      high[i].Store(to.high[i]);
-    }
+    for (int i = 0; i < 3; ++i) extent[i] = Max(extent[i], o.extent[i]);
   }
   /// Into one lane.
   void Store(BoxBlock& to, int lane) const {
-    for (int i = 0; i < 6; ++i) {
-      to.extent[i][lane] = -low[i / 3][i % 3];
-      to.extent[i + 6][lane] = high[i / 3][i % 3];
-    }
+    for (int i = 0; i < 12; ++i) to.extent[i][lane] = extent[i / 4][i % 4];
   }
 };
+
+/// The numbers of a vertex's row. Some more can be read behind them.
+inline const float* RowAt(const BoxRow* rows, int vertex) {
+  return reinterpret_cast<const float*>(rows + vertex);
+}
 
 // What is within the reach r of x, in floats: of size |x| and r are the conversions' errors, at most 2^-24 of it, and
 // those of the two operations that follow; 2^-22 are more than all. The last term is for what underflows.
@@ -67,20 +51,26 @@ void VertexRows(const RowArgs& a) {
     const Doubles from = Doubles::Load(start) - o;
     const Floats s(from), e(from + (Doubles::Load(way) - oWay));
     const Floats size = Abs(s) + Abs(e), reach(a.reach[a.body[v]] * (1 + kMore) + kLeast);
-    Row row = Row::Empty();
+    Floats below[2] = {Floats(-kInfinity), Floats(-kInfinity)}, above[2] = {below[0], below[1]};
     if (size[0] + size[1] + size[2] < kFarthest) {
       const Floats atStart = Abs(s) * more + reach, atEnd = Abs(e) * more + reach;
-      row.low[0] = s - atStart;
-      row.high[0] = s + atStart;
-      row.low[1] = e - atEnd;
-      row.high[1] = e + atEnd;
+      below[0] = -(s - atStart);
+      above[0] = s + atStart;
+      below[1] = -(e - atEnd);
+      above[1] = e + atEnd;
       if (a.cut && a.cut[v] != 0) {  // it may also end where it starts
         const Floats r(from - oWay), atRest = Abs(r) * more + reach;
-        row.low[1] = Min(r - atRest, row.low[1]);
-        row.high[1] = Max(r + atRest, row.high[1]);
+        below[1] = Max(-(r - atRest), below[1]);
+        above[1] = Max(r + atRest, above[1]);
       }
     }
-    row.Store(a.rows[v]);
+    // Three of four numbers count: the next ones overwrite the fourth.
+    float last[4], *to = a.rows[v].extent;
+    below[0].Store(to);
+    below[1].Store(to + 3);
+    above[0].Store(to + 6);
+    above[1].Store(last);
+    memcpy(to + 9, last, 3 * sizeof last[0]);
   };
   const int whole = a.end < a.vertices ? a.end : a.vertices - 1;  // four numbers can be read
   for (int v = a.begin; v < whole; ++v) put(v, &a.start[v].x, &a.way[v].x);
@@ -112,18 +102,20 @@ void ParentBoxes(const BoxBlock* boxes, int blocks, BoxBlock* parents) {
   }
 }
 
-/// Four rows of x, y, z become four x, four y, four z.
+/// Four rows of x, y, z become four x, four y, four z; or so of four numbers each.
+template <int numbers>
 inline void StoreTransposed(const Floats rows[4], float (*to)[kLanes], int lane) {
 #if defined(__GNUC__)
   const auto xy0 = __builtin_shufflevector(rows[0].v, rows[1].v, 0, 4, 1, 5);
   const auto xy2 = __builtin_shufflevector(rows[2].v, rows[3].v, 0, 4, 1, 5);
-  const auto z0 = __builtin_shufflevector(rows[0].v, rows[1].v, 2, 6, 2, 6);
-  const auto z2 = __builtin_shufflevector(rows[2].v, rows[3].v, 2, 6, 2, 6);
+  const auto zw0 = __builtin_shufflevector(rows[0].v, rows[1].v, 2, 6, 3, 7);
+  const auto zw2 = __builtin_shufflevector(rows[2].v, rows[3].v, 2, 6, 3, 7);
   Floats(__builtin_shufflevector(xy0, xy2, 0, 1, 4, 5)).Store(to[0] + lane);
   Floats(__builtin_shufflevector(xy0, xy2, 2, 3, 6, 7)).Store(to[1] + lane);
-  Floats(__builtin_shufflevector(z0, z2, 0, 1, 4, 5)).Store(to[2] + lane);
+  Floats(__builtin_shufflevector(zw0, zw2, 0, 1, 4, 5)).Store(to[2] + lane);
+  if (numbers > 3) Floats(__builtin_shufflevector(zw0, zw2, 2, 3, 6, 7)).Store(to[3] + lane);
 #else
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < numbers; ++i) {
     for (int k = 0; k < 4; ++k) to[i][lane + k] = rows[k][i];
   }
 #endif
@@ -132,7 +124,7 @@ inline void StoreTransposed(const Floats rows[4], float (*to)[kLanes], int lane)
 template <int corners>
 void ItemBoxes(const ItemBoxArgs& a) {
   for (int first = 0; first < a.items; first += 4) {
-    Floats below[2][4], above[2][4];
+    Floats extent[3][4];
     for (int k = 0; k < 4; ++k) {
       Row row = Row::Empty();
       if (first + k < a.items) {
@@ -141,16 +133,10 @@ void ItemBoxes(const ItemBoxArgs& a) {
         if (corners > 1) row.Add(Row::Load(a.rows[at[1]]));
         if (corners > 2) row.Add(Row::Load(a.rows[at[2]]));
       }
-      for (int i = 0; i < 2; ++i) {
-        below[i][k] = -row.low[i];
-        above[i][k] = row.high[i];
-      }
+      for (int i = 0; i < 3; ++i) extent[i][k] = row.extent[i];
     }
     BoxBlock& block = a.boxes[first / kLanes];
-    for (int i = 0; i < 2; ++i) {
-      StoreTransposed(below[i], block.extent + 3 * i, first % kLanes);
-      StoreTransposed(above[i], block.extent + 6 + 3 * i, first % kLanes);
-    }
+    for (int i = 0; i < 3; ++i) StoreTransposed<4>(extent[i], block.extent + 4 * i, first % kLanes);
   }
 }
 

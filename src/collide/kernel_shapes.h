@@ -1,7 +1,7 @@
 // How leaves lie in space. Included by kernels_impl.h inside the namespace of an instruction set, like everything
 // there; never elsewhere.
 
-using Floats8 = Pack<float, 8, Level>;  // of the start, and of the end
+using Floats8 = Pack<float, 8, Level>;  // x, y, z of the start, of the end, and two numbers that say nothing
 
 constexpr int kMostTriangles = 16;
 constexpr float kRowError = 0x1p-20f;    // of a coordinate's size: rows are rounded, and so is what follows from them
@@ -18,12 +18,28 @@ inline float GreatestError(const LeafShapeArgs& a, int leaf) {
   if (a.haveCuts) {
     Floats more(0);
     for (int i = a.vertexFirst[leaf]; i < a.vertexFirst[leaf + 1]; ++i) {
-      const Row row = Row::Load(a.rows[a.vertices[i]]);
-      more = Max(more, (row.high[1] - row.low[1]) - (row.high[0] - row.low[0]));
+      const float* extent = RowAt(a.rows, a.vertices[i]);
+      const Floats atStart = Floats::Load(extent + 6) + Floats::Load(extent);
+      const Floats atEnd = Floats::Load(extent + 9) + Floats::Load(extent + 3);
+      more = Max(more, atEnd - atStart);
     }
     sum = more[0] + more[1] + more[2];
   }
   return size * kRowError + sum;
+}
+
+/// x + y + z of the start in the first lane, and of the end in the last.
+inline Floats Sums(Floats8 a) {
+#if defined(__GNUC__)
+  const Floats x(__builtin_shufflevector(a.v, a.v, 0, 1, 2, 3)), rest(__builtin_shufflevector(a.v, a.v, 4, 5, 6, 7));
+  const Floats y(__builtin_shufflevector(x.v, rest.v, 1, 1, 4, 4)), z(__builtin_shufflevector(x.v, rest.v, 2, 2, 5, 5));
+  return x + y + z;
+#else
+  Floats sums;
+  sums.v[0] = a[0] + a[1] + a[2];
+  sums.v[3] = a[3] + a[4] + a[5];
+  return sums;
+#endif
 }
 
 /// From twice as large ones.
@@ -35,17 +51,20 @@ inline void StoreShapes(const Floats8* shapes, int blocks, float (*to)[3][kLanes
       float both[8];
       shapes[first + k].Store(both);
       start[k] = Floats::Load(both) * half;
-      end[k] = Floats::Load(both + 4) * half;
+      end[k] = Floats::Load(both + 3) * half;
     }
-    StoreTransposed(start, to[first / kLanes], first % kLanes);
-    StoreTransposed(end, to[blocks + first / kLanes], first % kLanes);
+    StoreTransposed<3>(start, to[first / kLanes], first % kLanes);
+    StoreTransposed<3>(end, to[blocks + first / kLanes], first % kLanes);
   }
 }
 
 /// Twice the shapes of a leaf's triangles. Returns how many.
 inline int DoubleShapes(const LeafShapeArgs& a, int leaf, Floats8* x, Floats8* y) {
   const int begin = a.triangleFirst[leaf], count = a.triangleFirst[leaf + 1] - begin;
-  const auto twiceMiddle = [&](int v) { return Floats8::Load(a.rows[v].low[0]) + Floats8::Load(a.rows[v].high[0]); };
+  const auto twiceMiddle = [&](int v) {
+    const float* extent = RowAt(a.rows, v);
+    return Floats8::Load(extent + 6) - Floats8::Load(extent);
+  };
   for (int t = 0; t < count; ++t) {
     const std::int32_t* corners = a.corners + 3 * (begin + t);
     const float* inverse = a.inverse + 4 * (a.inverseFirst[leaf] + t);
@@ -78,11 +97,11 @@ void LeafShapes(const LeafShapeArgs& a) {
       sumY += y[t];
     }
     LeafShape& shape = a.shapes[leaf];
-    float meanX[8], meanY[8], size = 0;
+    float meanX[8] = {}, meanY[8] = {}, size = 0;
     const float share = 0.25f / static_cast<float>(count);
-    for (int i = 0; i < 4; ++i) {
-      meanX[i] = meanX[i + 4] = (sumX[i] + sumX[i + 4]) * share * 2;
-      meanY[i] = meanY[i + 4] = (sumY[i] + sumY[i + 4]) * share * 2;
+    for (int i = 0; i < 3; ++i) {
+      meanX[i] = meanX[i + 3] = (sumX[i] + sumX[i + 3]) * share * 2;
+      meanY[i] = meanY[i + 3] = (sumY[i] + sumY[i + 3]) * share * 2;
     }
     for (int i = 0; i < 3; ++i) {
       shape.x[i] = meanX[i] / 2;
@@ -90,15 +109,14 @@ void LeafShapes(const LeafShapeArgs& a) {
       size += (meanX[i] < 0 ? -meanX[i] : meanX[i]) + (meanY[i] < 0 ? -meanY[i] : meanY[i]);
     }
     const Floats8 middleX = Floats8::Load(meanX), middleY = Floats8::Load(meanY);
-    float greatest = 0;
+    Floats greatest;
     for (int t = 0; t < count; ++t) {
-      const Floats8 dx = x[t] - middleX, dy = y[t] - middleY, squares = dx * dx + dy * dy;
-      const float start = squares[0] + squares[1] + squares[2], end = squares[4] + squares[5] + squares[6];
-      greatest = start > greatest ? start : greatest;
-      greatest = end > greatest ? end : greatest;
+      const Floats8 dx = x[t] - middleX, dy = y[t] - middleY;
+      greatest = Max(Sums(dx * dx + dy * dy), greatest);
     }
+    const float square = greatest[0] > greatest[3] ? greatest[0] : greatest[3];
     shape.error = a.greatestSlope[leaf] * GreatestError(a, leaf) + size * kShapeError;
-    shape.deviation = Sqrt(Floats(greatest))[0] / 2 + shape.error;
+    shape.deviation = Sqrt(Floats(square))[0] / 2 + shape.error;
   }
 }
 

@@ -16,9 +16,10 @@ inline constexpr float kFarthest = 1e30f;
 /// Boxes side by side.
 inline constexpr int kLanes = 8;
 
-/// The box of a vertex at the start and at the end of a motion. Numbers are rounded such that it grows.
-struct alignas(64) BoxRow {
-  float low[2][4], high[2][4];  ///< x, y, z and nothing, at the start and at the end [m].
+/// The box of a vertex at the start and at the end of a motion, as a BoxBlock has it. Numbers are rounded such that it
+/// grows.
+struct alignas(16) BoxRow {
+  float extent[12];  ///< [m]
 };
 
 /// The boxes of eight things: how far they go towards -x, -y, -z at the start, the same at the end, then towards x, y,
@@ -38,6 +39,7 @@ struct RowArgs {
   double origin[3];     ///< Boxes at the start are relative to it [m] ...
   double originWay[3];  ///< ... and at the end to that and this [m].
   BoxRow* rows;         ///< Out: what a vertex reaches; empty for what is farther than kFarthest or not a number.
+                        ///< Behind the last is one more, which is read too, whatever it holds.
 };
 
 struct LeafBoxArgs {

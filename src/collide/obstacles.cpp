@@ -120,6 +120,8 @@ void Obstacles::Add(int collider, std::vector<Vec3> local, double core) {
 void Obstacles::AddTo(ContactMesh& mesh) const {
   const std::int32_t first = mesh.vertices();
   std::int32_t body = mesh.clothBodies;
+  mesh.body.reserve(mesh.body.size() + Index(vertices_));
+  mesh.place.reserve(mesh.place.size() + Index(vertices_));
   for (const Obstacle& obstacle : all_) {
     mesh.body.insert(mesh.body.end(), obstacle.local.size(), body++);
     mesh.place.insert(mesh.place.end(), obstacle.local.begin(), obstacle.local.end());

@@ -166,14 +166,14 @@ struct PairFinder::Impl {
   const ContactMesh& mesh;
   const Executor& executor;
   const Kernels& kernels;
-  const Clusters clusters;
+  const Clusters& clusters;
   const FlatRegions regions;
   const int leafBlocks;
   const int chunkBlocks;  // of one chunk
   const int chunks;
   // Per leaf that is touched: of its edges, then come its triangles and its own vertices.
   std::vector<std::int32_t> firstItemBlock;
-  AlignedVector<BoxRow> rows;                   // per vertex
+  AlignedVector<BoxRow> rows;                   // per vertex, and one more
   std::vector<AlignedVector<BoxBlock>> levels;  // boxes of leaves, of blocks of leaves, ... of all
   std::vector<const BoxBlock*> levelBlocks;
   std::vector<LeafShape> shapes;          // per leaf
@@ -190,13 +190,13 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
     : mesh(m),
       executor(e),
       kernels(k),
-      clusters(MakeClusters(m)),
-      regions(MakeFlatRegions(m, clusters)),
+      clusters(m.clusters),
+      regions(MakeFlatRegions(m)),
       leafBlocks(Blocks(clusters.leaves())),
       chunkBlocks(std::max(kLeastChunkBlocks, (leafBlocks + kMostChunks - 1) / kMostChunks)),
       chunks((leafBlocks + chunkBlocks - 1) / chunkBlocks),
       firstItemBlock(Index(clusters.leaves())),
-      rows(m.body.size()),
+      rows(m.body.size() + 1),
       shapes(Index(clusters.clothLeaves)),
       areAllApart(Index(clusters.clothLeaves)),
       isTouched(Index(clusters.leaves())),
@@ -205,6 +205,7 @@ PairFinder::Impl::Impl(const ContactMesh& m, const Executor& e, const Kernels& k
       edgeEdgeLists(chunks),
       vertexTriangle(chunks),
       edgeEdge(chunks) {
+  assert(!clusters.triangleFirst.empty() && Index(clusters.triangleFirst.back()) == mesh.triangles.size());
   BoxBlock empty;
   for (auto& extents : empty.extent) std::fill_n(extents, kLanes, -INFINITY);
   levels.emplace_back(Index(leafBlocks), empty);
@@ -253,7 +254,7 @@ LeafShapeArgs PairFinder::Impl::ShapeArgs(int begin, int end, bool haveCuts) {
   return {.begin = begin,
           .end = end,
           .triangleFirst = clusters.triangleFirst.data(),
-          .corners = Corners(std::span<const Triangle>(clusters.triangles)),
+          .corners = Corners(std::span<const Triangle>(mesh.triangles)),
           .vertexFirst = clusters.vertexFirst.data(),
           .vertices = clusters.vertices.data(),
           .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
@@ -323,7 +324,7 @@ void PairFinder::Impl::TouchLeaves(int firstChunk, int endChunk) {
   for (const std::int32_t leaf : touched) {
     const auto count = [](const auto& items) { return Blocks(static_cast<std::int64_t>(items.size())); };
     firstItemBlock[Index(leaf)] = blocks;
-    blocks += count(clusters.Edges(leaf)) + count(clusters.OwnVertices(leaf)) + count(clusters.Triangles(leaf));
+    blocks += count(mesh.Edges(leaf)) + count(clusters.OwnVertices(leaf)) + count(mesh.Triangles(leaf));
   }
   if (itemBoxes.size() < Index(blocks)) itemBoxes.resize(Index(blocks) * 3 / 2);
 }
@@ -332,9 +333,9 @@ LeafItems PairFinder::Impl::ItemsOf(int leaf) const {
   LeafItems items;
   items.leafBoxes = &levels[0][Index(leaf / kLanes)];
   items.lane = leaf % kLanes;
-  items.edges = static_cast<int>(clusters.Edges(leaf).size());
+  items.edges = static_cast<int>(mesh.Edges(leaf).size());
   items.vertices = static_cast<int>(clusters.OwnVertices(leaf).size());
-  items.triangles = static_cast<int>(clusters.Triangles(leaf).size());
+  items.triangles = static_cast<int>(mesh.Triangles(leaf).size());
   items.edgeBoxes = itemBoxes.data() + firstItemBlock[Index(leaf)];
   items.triangleBoxes = items.edgeBoxes + Blocks(items.edges);
   items.vertexBoxes = items.triangleBoxes + Blocks(items.triangles);
@@ -354,8 +355,8 @@ void PairFinder::Impl::BoxItems() {
         kernels.itemBoxes({corners, cornersPerItem, items, rows.data(), to});
         to += Blocks(items);
       };
-      box(Corners(clusters.Edges(leaf)), 2, clusters.Edges(leaf).size());
-      box(Corners(clusters.Triangles(leaf)), 3, clusters.Triangles(leaf).size());
+      box(Corners(mesh.Edges(leaf)), 2, mesh.Edges(leaf).size());
+      box(Corners(mesh.Triangles(leaf)), 3, mesh.Triangles(leaf).size());
       box(Corners(clusters.OwnVertices(leaf)), 1, clusters.OwnVertices(leaf).size());
     }
   });
@@ -376,8 +377,8 @@ void PairFinder::Impl::CompareItems(int firstChunk, int endChunk) {
     const auto compare = [&](const LeafPair& pair) {
       kernels.nearItems(ItemsOf(pair.a), ItemsOf(pair.b), pair.a == pair.b, near);
       const auto vertices = [&](int leaf) { return Corners(clusters.OwnVertices(leaf)); };
-      const auto triangles = [&](int leaf) { return Corners(clusters.Triangles(leaf)); };
-      const auto edges = [&](int leaf) { return Corners(clusters.Edges(leaf)); };
+      const auto triangles = [&](int leaf) { return Corners(mesh.Triangles(leaf)); };
+      const auto edges = [&](int leaf) { return Corners(mesh.Edges(leaf)); };
       add(vertexTriangle, vertexTriangleLists, kernels.writeVertexTriangle,
           {near.vertexTriangle, near.vertexA, near.triangleB, vertices(pair.a), triangles(pair.b), nullptr});
       add(vertexTriangle, vertexTriangleLists, kernels.writeVertexTriangle,
@@ -442,10 +443,10 @@ std::span<const VertexQuad> PairFinder::edgeEdge() const {
 std::size_t PairFinder::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   const Impl& s = *impl_;
-  std::size_t sum = s.clusters.MemoryBytes() + s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.areAllApart) +
-                    bytes(s.firstItemBlock) + bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.touched) +
-                    bytes(s.isTouched) + s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() +
-                    s.edgeEdgeLists.MemoryBytes() + s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
+  std::size_t sum = s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.areAllApart) + bytes(s.firstItemBlock) +
+                    bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.touched) + bytes(s.isTouched) +
+                    s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() + s.edgeEdgeLists.MemoryBytes() +
+                    s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
   for (const auto& level : s.levels) sum += bytes(level);
   return sum;
 }

@@ -22,7 +22,7 @@ struct MeshMotion {
 
 class PairFinder {
  public:
-  /// The mesh must outlive it, and so must the executor.
+  /// The mesh has its clusters. It must outlive the finder, and so must the executor.
   PairFinder(const ContactMesh& mesh, const Executor& executor);
   /// With kernels other than the fastest, which find the same.
   PairFinder(const ContactMesh& mesh, const Executor& executor, const collide::Kernels& kernels);

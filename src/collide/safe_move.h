@@ -50,7 +50,7 @@ struct SafeMoveReport {
 
 class SafeMove {
  public:
-  /// Both must outlive it.
+  /// Both must outlive it. The mesh has its clusters.
   SafeMove(const ContactMesh& mesh, const Executor& executor);
 
   /// What it lets pass through each other from now on is not kept apart. None: all is. It must outlive its use.

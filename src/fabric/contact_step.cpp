@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "collide/predicates.h"
 #include "mesh/topology.h"
@@ -49,7 +50,20 @@ void PlaceCloth(const FabricModel& model, int cloth, std::vector<Vec3>& place) {
   }
 }
 
-ContactMesh MakeContactMesh(const FabricModel& model, const Obstacles& obstacles) {
+/// The mean length of a cloth's edges [m].
+std::vector<double> MeanEdges(const ContactMesh& mesh) {
+  std::vector<double> length(Index(mesh.clothBodies), 0), count(length);
+  for (const Edge& edge : mesh.edges) {
+    const std::size_t body = Index(mesh.body[Index(edge.a)]);
+    length[body] += Length(mesh.place[Index(edge.a)] - mesh.place[Index(edge.b)]);
+    ++count[body];
+  }
+  for (std::size_t c = 0; c < length.size(); ++c) length[c] /= std::max(count[c], 1.0);
+  return length;
+}
+
+/// `meanEdges`: out, the mean length of each cloth's edges [m].
+ContactMesh MakeContactMesh(const FabricModel& model, const Obstacles& obstacles, std::vector<double>& meanEdges) {
   ContactMesh mesh;
   mesh.clothVertices = model.vertexCount;
   mesh.clothBodies = model.Cloths();
@@ -60,21 +74,9 @@ ContactMesh MakeContactMesh(const FabricModel& model, const Obstacles& obstacles
   }
   mesh.triangles = model.triangles;
   mesh.edges = BuildTopology(Index(model.vertexCount), model.triangles).edges;
+  meanEdges = MeanEdges(mesh);  // sums depend on the order: as topology has them, and without obstacles
   obstacles.AddTo(mesh);
-  return mesh;
-}
-
-/// The mean length of a cloth's edges [m].
-std::vector<double> MeanEdges(const ContactMesh& mesh) {
-  std::vector<double> length(Index(mesh.clothBodies), 0), count(length);
-  for (const Edge& edge : mesh.edges) {
-    const std::size_t body = Index(mesh.body[Index(edge.a)]);
-    if (body >= length.size()) break;  // obstacles come last
-    length[body] += Length(mesh.place[Index(edge.a)] - mesh.place[Index(edge.b)]);
-    ++count[body];
-  }
-  for (std::size_t c = 0; c < length.size(); ++c) length[c] /= std::max(count[c], 1.0);
-  return length;
+  return Clustered(std::move(mesh));
 }
 
 }  // namespace
@@ -83,7 +85,7 @@ ContactStep::ContactStep(const Scene& scene, const FabricModel& model, const Exe
     : model_(model),
       executor_(executor),
       obstacles_(scene),
-      mesh_(MakeContactMesh(model, obstacles_)),
+      mesh_(MakeContactMesh(model, obstacles_, meanEdges_)),
       safeMove_(mesh_, executor),
       contacts_(mesh_, executor) {
   const std::size_t count = Index(mesh_.vertices());
@@ -97,22 +99,21 @@ ContactStep::ContactStep(const Scene& scene, const FabricModel& model, const Exe
 
 void ContactStep::Configure(const Scene& scene) {
   obstacles_.Configure(scene);
-  const std::vector<double> meanEdges = MeanEdges(mesh_);
   distances_.half.assign(Index(mesh_.bodies()), 0);
   distances_.core.assign(Index(mesh_.bodies()), 0);
   if (distances_.clothPairs != scene.simulation.selfCollision) judged_ = false;
   distances_.clothPairs = scene.simulation.selfCollision;
   surfaces_.assign(Index(mesh_.bodies()), {});
   double most = 0;
-  for (std::size_t c = 0; c < meanEdges.size(); ++c) {
+  for (std::size_t c = 0; c < meanEdges_.size(); ++c) {
     const ClothSettings& cloth = scene.cloths[c];
-    distances_.half[c] = 0.5 * (cloth.contactDistance > 0 ? cloth.contactDistance : kDistance * meanEdges[c]);
+    distances_.half[c] = 0.5 * (cloth.contactDistance > 0 ? cloth.contactDistance : kDistance * meanEdges_[c]);
     surfaces_[c] = {.friction = cloth.friction};
     most = std::max(most, distances_.half[c]);
   }
   distance_ = 2 * most;
-  const double longest = meanEdges.empty() ? 0 : *std::max_element(meanEdges.begin(), meanEdges.end());
-  std::size_t body = meanEdges.size();
+  const double longest = meanEdges_.empty() ? 0 : *std::max_element(meanEdges_.begin(), meanEdges_.end());
+  std::size_t body = meanEdges_.size();
   for (const Obstacle& obstacle : obstacles_.all()) {
     const double core = obstacle.core < kCoarse * longest ? obstacle.core : 0;
     const double thickness = obstacle.collider >= 0 ? scene.colliders[Index(obstacle.collider)].thickness : 0;
@@ -360,7 +361,7 @@ void ContactStep::JudgeLoneEdges(std::vector<Intersection>& met) {
     const std::int32_t from = first + std::min(edge.a, edge.b), to = first + std::max(edge.a, edge.b);
     const Vec3 &a = start_[Index(from)], &b = start_[Index(to)];
     for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
-      const Triangle& triangle = model_.triangles[t];
+      const Triangle& triangle = mesh_.triangles[t];
       const Vec3 &p = start_[Index(triangle.a)], &q = start_[Index(triangle.b)], &r = start_[Index(triangle.c)];
       if (apart(a.x, b.x, p.x, q.x, r.x) || apart(a.y, b.y, p.y, q.y, r.y) || apart(a.z, b.z, p.z, q.z, r.z)) continue;
       if (SegmentMeetsTriangle(a, b, p, q, r)) met.push_back({{from, to}, static_cast<std::int32_t>(t)});

@@ -66,8 +66,8 @@ class ContactStep {
   /// The same, set, after a Restart; obstacles of another number are left where they are.
   void WriteState(std::span<const Touch> touches, std::span<const Vec3> obstacles);
 
-  /// Of the lists of what is near and of contacts.
-  std::size_t MemoryBytes() const { return safeMove_.MemoryBytes() + contacts_.MemoryBytes(); }
+  /// Of what may touch, and the lists of what is near and of contacts.
+  std::size_t MemoryBytes() const { return mesh_.MemoryBytes() + safeMove_.MemoryBytes() + contacts_.MemoryBytes(); }
 
   /// The greatest distance of contact of cloth [m].
   double distance() const { return distance_; }
@@ -85,6 +85,7 @@ class ContactStep {
   const FabricModel& model_;
   const Executor& executor_;
   Obstacles obstacles_;
+  std::vector<double> meanEdges_;  // per cloth, as MakeContactMesh has it
   ContactMesh mesh_;
   SafeMove safeMove_;
   Contacts contacts_;

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,20 @@ using namespace percale::test;
 
 namespace {
 
+/// Whether two lists have the same things, in any order.
+template <class Item>
+bool AreSame(std::vector<Item> a, std::vector<Item> b) {
+  const auto isLess = [](const Item& one, const Item& other) { return std::memcmp(&one, &other, sizeof one) < 0; };
+  std::sort(a.begin(), a.end(), isLess);
+  std::sort(b.begin(), b.end(), isLess);
+  return a == b;
+}
+
 /// What is wrong with the leaves of a mesh, or nothing.
-std::string Fault(const ContactMesh& mesh) {
-  const Clusters clusters = MakeClusters(mesh);
+std::string Fault(const ContactMesh& given) {
+  const ContactMesh mesh = Clustered(given);
+  const Clusters& clusters = mesh.clusters;
   std::vector<int> vertexSeen(Index(mesh.vertices()), 0);
-  std::vector<Edge> edges;
-  std::size_t triangles = 0;
   for (int leaf = 0; leaf < clusters.leaves(); ++leaf) {
     const std::int32_t body = clusters.body[Index(leaf)];
     if (leaf > 0 && body < clusters.body[Index(leaf - 1)]) return "bodies that do not ascend";
@@ -29,25 +38,26 @@ std::string Fault(const ContactMesh& mesh) {
       if (mesh.body[Index(v)] != body || !lists(v)) return "a vertex of another body, or listed twice";
     }
     for (const std::int32_t v : clusters.OwnVertices(leaf)) ++vertexSeen[Index(v)];
-    for (const Edge& e : clusters.Edges(leaf)) {
+    for (const Edge& e : mesh.Edges(leaf)) {
       if (!lists(e.a) || !lists(e.b)) return "an edge whose leaf does not list its ends";
-      edges.push_back(e);
     }
-    for (const Triangle& t : clusters.Triangles(leaf)) {
+    for (const Triangle& t : mesh.Triangles(leaf)) {
       if (!lists(t.a) || !lists(t.b) || !lists(t.c)) return "a triangle whose leaf does not list its corners";
-      ++triangles;
     }
-    if (clusters.Triangles(leaf).size() > std::size_t{Clusters::kLeafItems}) return "a leaf that is too large";
+    if (mesh.Triangles(leaf).size() > std::size_t{Clusters::kLeafItems}) return "a leaf that is too large";
   }
   for (const int seen : vertexSeen) {
     if (seen != 1) return "a vertex that is not some one leaf's own";
   }
-  const auto less = [](const Edge& e, const Edge& f) { return e.a != f.a ? e.a < f.a : e.b < f.b; };
-  std::vector<Edge> all = mesh.edges;
-  std::sort(edges.begin(), edges.end(), less);
-  std::sort(all.begin(), all.end(), less);
-  if (edges != all) return "edges other than the mesh's";
-  return triangles == mesh.triangles.size() ? "" : "triangles other than the mesh's";
+  if (Index(clusters.edgeFirst.back()) != mesh.edges.size()) return "edges in no leaf";
+  if (Index(clusters.triangleFirst.back()) != mesh.triangles.size()) return "triangles in no leaf";
+  if (!AreSame(mesh.edges, given.edges)) return "edges other than the mesh's";
+  if (!AreSame(mesh.triangles, given.triangles)) return "triangles other than the mesh's";
+  if (mesh.edges.capacity() != mesh.edges.size() || mesh.triangles.capacity() != mesh.triangles.size() ||
+      clusters.vertices.capacity() != clusters.vertices.size()) {
+    return "room to spare";
+  }
+  return "";
 }
 
 }  // namespace
@@ -71,7 +81,7 @@ TEST_CASE("each vertex, edge and triangle belongs to one leaf, with all that it 
 TEST_CASE("leaves are full, and no longer than they have to be") {
   MovingMesh m;
   AddSheet(m, 65, 0.01, 0);
-  const Clusters clusters = MakeClusters(m.mesh);
+  const Clusters clusters = Clustered(m.mesh).clusters;
   CHECK(clusters.leaves() == 2 * 64 * 64 / Clusters::kLeafItems);
   double longest = 0;
   for (int leaf = 0; leaf < clusters.leaves(); ++leaf) {

@@ -46,7 +46,8 @@ bool AreOfMesh(const ContactMesh& mesh, const PairFinder& finder) {
 /// farther apart at all times. `hidden`: counts pairs whose boxes come within reach, but that do not.
 std::string Fault(const MovingMesh& m, double slack = 1e-6, std::size_t* hidden = nullptr) {
   const Executor executor(1);
-  PairFinder finder(m.mesh, executor);
+  const ContactMesh mesh = Clustered(m.mesh);
+  PairFinder finder(mesh, executor);
   finder.Find(m.Motion(), m.reach, m.clothPairs);
   if (!AreOfMesh(m.mesh, finder)) return "what the mesh does not have";
   const PairSet vertexTriangle = Sorted(finder.vertexTriangle()), edgeEdge = SortedEdges(finder.edgeEdge());
@@ -88,7 +89,8 @@ std::string Fault(const MovingMesh& m, double slack = 1e-6, std::size_t* hidden 
 
 std::size_t CountPairs(const MovingMesh& m) {
   const Executor executor(1);
-  PairFinder finder(m.mesh, executor);
+  const ContactMesh mesh = Clustered(m.mesh);
+  PairFinder finder(mesh, executor);
   finder.Find(m.Motion(), m.reach, m.clothPairs);
   return finder.vertexTriangle().size() + finder.edgeEdge().size();
 }
@@ -237,7 +239,8 @@ TEST_CASE("one vertex that is gone far hides no pairs of the others") {
     CAPTURE(away);
     MovingMesh m = Sheet(12, 2);
     const Executor executor(1);
-    PairFinder finder(m.mesh, executor);
+    const ContactMesh mesh = Clustered(m.mesh);
+    PairFinder finder(mesh, executor);
     const std::int32_t gone = 40;
     const auto without = [&](PairSet set) {
       const auto isGone = [&](const VertexQuad& q) { return std::find(q.begin(), q.end(), gone) != q.end(); };
@@ -296,7 +299,8 @@ TEST_CASE("whatever comes within reach at any time, in any way that cuts allow, 
     Move(m, 2 * kSpacing, static_cast<std::uint64_t>(round), RandomVector(random, 10 * kSpacing));
     for (std::size_t v = 0; v < m.start.size(); ++v) m.cut.push_back(random.NextUnit() < 0.2 ? 1 : 0);
     const Executor executor(1);
-    PairFinder finder(m.mesh, executor);
+    const ContactMesh mesh = Clustered(m.mesh);
+    PairFinder finder(mesh, executor);
     finder.Find(m.Motion(), m.reach, true);
     const PairSet vertexTriangle = Sorted(finder.vertexTriangle()), edgeEdge = SortedEdges(finder.edgeEdge());
     const auto body = [&](std::int32_t v) { return m.mesh.body[Index(v)]; };
@@ -409,14 +413,15 @@ TEST_CASE("the order is the same for any number of threads, and for a finder tha
   MovingMesh bodies = Bodies(), drape = Sheet(Fewer(60, 40), 1), crumpled = Sheet(Fewer(40, 20), 4);
   for (const MovingMesh* m : {&bodies, &drape, &crumpled}) {
     const Executor one(1);
-    PairFinder first(m->mesh, one);
+    const ContactMesh mesh = Clustered(m->mesh);
+    PairFinder first(mesh, one);
     first.Find(m->Motion(), m->reach, m->clothPairs);
     CHECK(!first.vertexTriangle().empty());
     CHECK(!first.edgeEdge().empty());
     for (const int threads : {1, 2, 3, 8}) {
       CAPTURE(threads);
       const Executor executor(threads);
-      PairFinder finder(m->mesh, executor);
+      PairFinder finder(mesh, executor);
       MovingMesh other = *m;
       for (Vec3& p : other.start) p = p * 0.7;
       for (int repeat = 0; repeat < 3; ++repeat) {
@@ -433,12 +438,13 @@ TEST_CASE("kernels of every instruction set find the same in the same order") {
   MovingMesh bodies = Bodies(), drape = Sheet(60, 1), crumpled = Sheet(40, 4);
   for (const MovingMesh* m : {&bodies, &drape, &crumpled}) {
     const Executor executor(1);
-    PairFinder plain(m->mesh, executor, *collide::RunnableKernels().front());
+    const ContactMesh mesh = Clustered(m->mesh);
+    PairFinder plain(mesh, executor, *collide::RunnableKernels().front());
     plain.Find(m->Motion(), m->reach, m->clothPairs);
     CHECK(!plain.edgeEdge().empty());
     for (const collide::Kernels* kernels : collide::RunnableKernels()) {
       CAPTURE(kernels->name);
-      PairFinder finder(m->mesh, executor, *kernels);
+      PairFinder finder(mesh, executor, *kernels);
       finder.Find(m->Motion(), m->reach, m->clothPairs);
       CHECK(Same(finder.vertexTriangle(), plain.vertexTriangle()));
       CHECK(Same(finder.edgeEdge(), plain.edgeEdge()));

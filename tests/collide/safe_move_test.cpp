@@ -35,7 +35,8 @@ struct Moved {
 
 Moved Move(const MovingMesh& m, int threads = 1) {
   const Executor executor(threads);
-  SafeMove safe(m.mesh, executor);
+  const ContactMesh mesh = Clustered(m.mesh);
+  SafeMove safe(mesh, executor);
   Moved moved;
   moved.share.resize(m.start.size());
   moved.report = safe.Move(m.start, m.way, {m.reach, m.clothPairs}, moved.share);
@@ -176,16 +177,16 @@ TEST_CASE("the same bits for any number of threads") {
 }
 
 TEST_CASE("pairs that are near in the flat cloth are in contact only where they come nearer still") {
-  MovingMesh m = Stack(6, 1, 0);
+  const ContactMesh one = Clustered(Stack(6, 1, 0).mesh);
   const Executor executor(1);
-  const SafeMove safe(m.mesh, executor);
+  const SafeMove safe(one, executor);
   // Opposite corners of two triangles with a common side.
   const ContactDistances distances{{10 * kSpacing}, true};
   const double found = safe.DistanceOf(PairKind::VertexTriangle, {0, 1, 7, 2}, distances);
   CHECK(found < kSpacing);
   CHECK(found > 0);
   // Those of different cloths keep their distance.
-  MovingMesh two = Stack(6, 2, kSpacing);
-  const SafeMove other(two.mesh, executor);
+  const ContactMesh two = Clustered(Stack(6, 2, kSpacing).mesh);
+  const SafeMove other(two, executor);
   CHECK(other.DistanceOf(PairKind::VertexTriangle, {0, 36, 37, 42}, {{kHalf, kHalf}, true}) == 2 * kHalf);
 }
