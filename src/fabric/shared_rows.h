@@ -28,7 +28,7 @@ template <class T>
 struct SharedRows {
   std::vector<std::int32_t> kind;    ///< Per row. Kinds are numbered in the order of the first rows of each.
   std::vector<std::int32_t> first;   ///< Per kind: its first entry; one more number at the end.
-  std::vector<std::int32_t> offset;  ///< Per entry: its column minus its row, ascending in a kind.
+  std::vector<std::int32_t> offset;  ///< Per entry: its column minus its row, or the origin.
   std::vector<T> value;              ///< Per entry.
 
   int rows() const { return static_cast<int>(kind.size()); }
