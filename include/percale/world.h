@@ -72,8 +72,9 @@ struct StepReport {
                                          ///< so that nothing passes through anything, of all steps.
   int splits = 0;                        ///< Engine::Fabric: steps, and parts of steps, that were done over in parts
                                          ///< since much was stopped on its way.
-  std::int64_t contactBytes = 0;         ///< Engine::Fabric: memory of the lists of what is near and of contacts. It
-                                         ///< grows where more is near than ever before; no pair is dropped.
+  std::int64_t contactBytes = 0;         ///< Engine::Fabric: memory of what may touch, of the lists of what is near and
+                                         ///< of contacts. It grows where more is near than ever before; no pair is
+                                         ///< dropped.
   int newtonIterations = 0;              ///< Engine::Fabric: corrections, summed over the steps.
   int linearIterations = 0;              ///< Engine::Fabric: of the linear solver, summed over the steps.
   double residual = 0;                   ///< Engine::Fabric: last correction over the first, worst step.

@@ -28,6 +28,23 @@ inline float GreatestError(const LeafShapeArgs& a, int leaf) {
   return size * kRowError + sum;
 }
 
+/// x, y, z of the start, and of the end, and a number that says nothing.
+struct Halves {
+  Floats start, end;
+
+  explicit Halves(Floats8 a) {
+#if defined(__GNUC__)
+    start = Floats(__builtin_shufflevector(a.v, a.v, 0, 1, 2, 3));
+    end = Floats(__builtin_shufflevector(a.v, a.v, 3, 4, 5, 6));
+#else
+    float both[8];
+    a.Store(both);
+    start = Floats::Load(both);
+    end = Floats::Load(both + 3);
+#endif
+  }
+};
+
 /// x + y + z of the start in the first lane, and of the end in the last.
 inline Floats Sums(Floats8 a) {
 #if defined(__GNUC__)
@@ -48,10 +65,9 @@ inline void StoreShapes(const Floats8* shapes, int blocks, float (*to)[3][kLanes
   for (int first = 0; first < blocks * kLanes; first += 4) {
     Floats start[4], end[4];
     for (int k = 0; k < 4; ++k) {
-      float both[8];
-      shapes[first + k].Store(both);
-      start[k] = Floats::Load(both) * half;
-      end[k] = Floats::Load(both + 3) * half;
+      const Halves halves(shapes[first + k]);
+      start[k] = halves.start * half;
+      end[k] = halves.end * half;
     }
     StoreTransposed<3>(start, to[first / kLanes], first % kLanes);
     StoreTransposed<3>(end, to[blocks + first / kLanes], first % kLanes);
