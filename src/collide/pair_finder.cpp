@@ -82,9 +82,10 @@ class Pairs {
 
   void Clear() { count_ = 0; }
   void Add(Write write, WriteArgs args) {
+    if (args.count == 0) return;
     if (all_.size() < count_ + Index(args.count)) all_.resize((count_ + Index(args.count)) * 3 / 2);
     args.to = all_.data()->data() + 4 * count_;
-    if (args.count > 0) count_ += Index(write(args));
+    count_ += Index(write(args));
   }
   /// Makes room for what may be written to add as many again.
   void KeepRoom() {
