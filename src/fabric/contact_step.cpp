@@ -81,16 +81,17 @@ ContactMesh MakeContactMesh(const FabricModel& model, const Obstacles& obstacles
 
 }  // namespace
 
-ContactStep::ContactStep(const Scene& scene, const FabricModel& model, const Executor& executor)
+ContactStep::ContactStep(const Scene& scene, const FabricModel& model, const Executor& executor, VertexScratch& scratch)
     : model_(model),
       executor_(executor),
       obstacles_(scene),
       mesh_(MakeContactMesh(model, obstacles_, meanEdges_)),
       safeMove_(mesh_, executor),
-      contacts_(mesh_, executor) {
-  const std::size_t count = Index(mesh_.vertices());
-  for (std::vector<Vec3>* vectors : {&start_, &way_}) vectors->resize(count);
-  share_.resize(count);
+      contacts_(mesh_, executor),
+      start_(scratch.first),
+      way_(scratch.second) {
+  scratch.Fit(Index(mesh_.vertices()));
+  share_.resize(Index(mesh_.vertices()));
   for (std::vector<Vec3>* vectors : {&obstacleBefore_, &obstacle_, &obstacleTarget_})
     vectors->resize(Index(obstacles_.vertices()));
   Configure(scene);

@@ -17,14 +17,15 @@
 #include "core/executor.h"
 #include "fabric/contacts.h"
 #include "fabric/fabric_model.h"
+#include "fabric/vertex_scratch.h"
 #include "percale/scene.h"
 
 namespace percale::fabric {
 
 class ContactStep {
  public:
-  /// Both but the scene must outlive it.
-  ContactStep(const Scene& scene, const FabricModel& model, const Executor& executor);
+  /// All but the scene must outlive it. `scratch` is fitted to all vertices, and must stay so.
+  ContactStep(const Scene& scene, const FabricModel& model, const Executor& executor, VertexScratch& scratch);
 
   /// Whether Configure can take this scene, as its colliders have the same vertices.
   bool Fits(const Scene& scene) const { return obstacles_.Fit(scene); }
@@ -96,7 +97,7 @@ class ContactStep {
   // Vertices of obstacles: a step ago, now, and where they are led.
   std::vector<Vec3> obstacleBefore_, obstacle_, obstacleTarget_;
   // Of the mesh, cloth and obstacles:
-  std::vector<Vec3> start_, way_;
+  std::vector<Vec3>&start_, &way_;  // in scratch
   std::vector<double> share_;
   // While something is tangled, or that is not known:
   std::optional<IntersectionJudge> judge_;

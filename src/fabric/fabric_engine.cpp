@@ -52,7 +52,7 @@ FabricEngine::FabricEngine(const Scene& scene, FabricModel model, const Executor
       model_(std::move(model)),
       solver_(model_, executor),
       window_(model_),
-      contact_(std::make_unique<ContactStep>(scene, model_, executor)) {
+      contact_(std::make_unique<ContactStep>(scene, model_, executor, solver_.objective().scratch())) {
   solver_.objective().SetContacts(&contact_->contacts());
   const std::size_t count = Index(model_.vertexCount);
   free_.assign(count, 1);
@@ -66,7 +66,7 @@ void FabricEngine::Configure(const Scene& scene) {
   if (contact_->Fits(scene)) {
     contact_->Configure(scene);
   } else {
-    contact_ = std::make_unique<ContactStep>(scene, model_, executor_);
+    contact_ = std::make_unique<ContactStep>(scene, model_, executor_, solver_.objective().scratch());
     contact_->Restart(scene, time_);
     solver_.objective().SetContacts(&contact_->contacts());
   }

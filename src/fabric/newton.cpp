@@ -32,8 +32,6 @@ NewtonSolver::NewtonSolver(const FabricModel& model, const Executor& executor)
       executor_(executor),
       matrix_(MakePattern(model.vertexCount, model.triangles)),
       objective_(model, matrix_.pattern(), executor) {
-  gradient_ = objective_.scratch();
-  trial_.resize(Index(model.vertexCount));
   right_.assign(VectorLength(model.vertexCount), 0);
   direction_.assign(VectorLength(model.vertexCount), 0);
   chunkSums_.resize(Index(Chunks(model.vertexCount)));
@@ -65,6 +63,8 @@ void NewtonSolver::SetStep(double h) {
 
 NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonSettings& settings) {
   NewtonResult result;
+  gradient_ = std::span(objective_.scratch().first).first(y.size());
+  trial_ = std::span(objective_.scratch().second).first(y.size());
   double first = 0;
   while (result.iterations < settings.maxIterations) {
     const bool touched = matrix_.extra().any;

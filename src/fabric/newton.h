@@ -54,8 +54,7 @@ class NewtonSolver {
   Objective objective_;
   Multigrid multigrid_;
   ConjugateGradient conjugateGradient_;
-  std::span<Vec3> gradient_;  // in the objective's memory
-  std::vector<Vec3> trial_;
+  std::span<Vec3> gradient_, trial_;  // in the objective's scratch, within Solve
   RealVector right_, direction_;
   double trialEnergy_ = 0;
   std::vector<std::array<double, 2>> chunkSums_;

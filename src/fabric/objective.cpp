@@ -42,7 +42,7 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
   const std::size_t live = std::min(triangles, Index(window_.live()));
   triangleGradient_.resize(3 * live);
   triangleHessian_.assign(kHessianReals * live + 1, 0);
-  plateForce_.resize(static_cast<std::size_t>(model.vertexCount));
+  scratch_.Fit(Index(model.vertexCount));
   const auto items = std::max(static_cast<std::size_t>(model.vertexCount), triangles);
   chunkSums_.resize(std::max(batches_.size(), items / kRowsPerChunk + 1));
   TakeMaterials();
@@ -190,7 +190,7 @@ double Objective::PlateEnergy(std::span<const Vec3> y) {
                                  .value = q.value.data(),
                                  .isPlate = model_.plate.data(),
                                  .x = y.data(),
-                                 .force = plateForce_.data()});
+                                 .force = scratch_.first.data()});
   });
 }
 
@@ -331,7 +331,7 @@ void Objective::Gather(std::span<const Vec3> y, std::span<Vec3> gradient, int be
       sum += triangleGradient_[Index(live.Place(model_.corners.entry[Index(e)]))];
     }
     if (model_.plate[Index(v)]) {
-      sum += plateForce_[Index(v)];
+      sum += scratch_.first[Index(v)];
     } else {
       for (std::int32_t e = model_.hingeEnds.first[Index(v)]; e < model_.hingeEnds.first[Index(v) + 1]; ++e) {
         const std::int32_t place = model_.hingeEnds.entry[Index(e)];

@@ -18,6 +18,7 @@
 #include "fabric/kernels.h"
 #include "fabric/system_matrix.h"
 #include "fabric/triangle_window.h"
+#include "fabric/vertex_scratch.h"
 #include "percale/vec3.h"
 
 namespace percale::fabric {
@@ -62,8 +63,8 @@ class Objective {
   /// changes with that [J].
   double GradientAndTangent(std::span<const Vec3> y, std::span<Vec3> gradient, SystemMatrix& matrix);
 
-  /// Memory for a gradient that is used no longer than until the next call of Energy.
-  std::span<Vec3> scratch() { return plateForce_; }
+  /// Lent to whoever keeps the rules that it states.
+  VertexScratch& scratch() { return scratch_; }
 
   /// Of membrane and bending alone [J].
   double ElasticEnergy(std::span<const Vec3> y);
@@ -107,7 +108,7 @@ class Objective {
   // Per hinge, where any cloth bends by them:
   std::vector<double> startAngle_, angle_, moment_;
   std::vector<Hinge<double>> hinge_;
-  std::vector<Vec3> plateForce_;  // per vertex of a plate, where PlateEnergy was called last [N]
+  VertexScratch scratch_;  // first: per vertex of a plate, the force where PlateEnergy was called last [N]
   std::vector<double> chunkSums_;
 };
 
