@@ -248,7 +248,7 @@ std::vector<FabricTarget> FabricBench::Targets() const {
         {"greatest time per vertex beyond 10,000, over the time there", "<= 1.5", Text("%.2f", ratio), ratio <= 1.5});
     const double gigabytes = static_cast<double>(large->peakMemory) / 1e9;
     if (large->peakMemory > 0)
-      targets.push_back({"memory of 1,000,000 vertices", "<= 1 GB", Text("%.1f GB", gigabytes), gigabytes <= 1});
+      targets.push_back({"memory of 1,000,000 vertices", "<= 1 GB", Text("%.2f GB", gigabytes), gigabytes <= 1});
   }
   if (!scales.empty()) {
     targets.push_back({"positions for one and several threads", "equal bits", Equal() ? "equal" : "differ", Equal()});

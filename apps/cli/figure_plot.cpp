@@ -13,7 +13,8 @@ namespace {
 // The picture, in units of its own [pixel at full size].
 constexpr double kWidth = 640, kHeight = 400;
 constexpr double kLeft = 74, kRight = 620, kTop = 62, kBottom = 346;
-constexpr int kMostSteps = 8;  // between the numbers of an axis
+constexpr int kMostSteps = 8;                       // between the numbers of an axis
+constexpr double kLegendMark = 46, kCharacter = 7;  // widths: of a mark and the room around it, and of a character
 
 /// An axis between two places of the picture.
 class Scale {
@@ -104,14 +105,21 @@ std::string FormatSeries(const Series& series, std::size_t number, const Scale& 
   return Text("<g class=\"s%zu\">", number) + "<path d=\"" + path + "\"/>\n" + marks + "</g>\n";
 }
 
+/// In one row, or in columns of two where names are long.
 std::string FormatLegend(const Plot& plot) {
-  if (plot.series.size() < 2) return {};
+  const std::size_t count = plot.series.size();
+  if (count < 2) return {};
+  std::size_t longest = 0;
+  for (const Series& series : plot.series) longest = std::max(longest, CountCharacters(series.name));
+  const double needed = kLegendMark + kCharacter * double(longest);
+  const std::size_t rows = double(count) * needed > kRight - kLeft ? 2 : 1;
+  const double width = (kRight - kLeft) / double((count + rows - 1) / rows);
   std::string svg;
-  const double width = (kRight - kLeft) / double(plot.series.size());
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    const double left = kLeft + width * double(i);
-    svg += Text("<g class=\"s%zu\"><path d=\"M%.1f 44L%.1f 44\"/></g>", i, left, left + 26) +
-           Label(left + 32, 48.5, "start", plot.series[i].name);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double left = kLeft + width * double(i / rows);
+    const double y = rows == 1 ? 44 : i % rows == 0 ? 36 : 53;
+    svg += Text("<g class=\"s%zu\"><path d=\"M%.1f %.1fL%.1f %.1f\"/></g>", i, left, y, left + 26, y) +
+           Label(left + 32, y + 4.5, "start", plot.series[i].name);
   }
   return svg;
 }

@@ -20,11 +20,6 @@ constexpr std::size_t kLegend = 78, kLegendMark = 5;      // about as many chara
 
 using Row = std::array<std::string, kColumns>;
 
-/// Characters of UTF-8 text, each one column wide.
-std::size_t Width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
-}
-
 std::string Number(double number) {
   return std::isfinite(number) ? Text("%.6g", number) : "none";
 }
@@ -63,7 +58,7 @@ Plot PlotOf(const Refinement& refinement) {
   const std::vector<Reading>& readings = refinement.results[0].readings;
   // As many of them as the legend has room for, evenly among all.
   std::size_t widest = 0;
-  for (const Reading& reading : readings) widest = std::max(widest, Width(reading.what));
+  for (const Reading& reading : readings) widest = std::max(widest, CountCharacters(reading.what));
   const std::size_t shown =
       std::min({readings.size(), kMostSeries, std::max<std::size_t>(1, kLegend / (widest + kLegendMark))});
   for (std::size_t s = 0; s < shown; ++s) {
@@ -136,14 +131,14 @@ std::string FormatTable(const VerifyReport& report) {
   }
   std::array<std::size_t, kColumns> widths{};
   for (const Row& row : rows) {
-    for (std::size_t k = 0; k < kColumns; ++k) widths[k] = std::max(widths[k], Width(row[k]));
+    for (std::size_t k = 0; k < kColumns; ++k) widths[k] = std::max(widths[k], CountCharacters(row[k]));
   }
   std::string text, subject, last;
   std::size_t at = 0;
   const auto print = [&](const Row& row) {
     std::string line;
     for (std::size_t k = 0; k < kColumns; ++k) {
-      const std::string pad(widths[k] - Width(row[k]), ' ');
+      const std::string pad(widths[k] - CountCharacters(row[k]), ' ');
       const bool right = k >= kFirstNumber && k <= kLastNumber;
       line += (k > 0 ? "  " : "") + (right ? pad + row[k] : row[k] + pad);
     }

@@ -141,6 +141,11 @@ std::optional<double> ParseTypedNumber(std::string_view text) {
   return ParseNumber(number);
 }
 
+std::size_t CountCharacters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
 std::string Quote(std::string_view text, std::size_t limit) {
   std::string_view rest;
   if (limit > 0 && text.size() > limit) {

@@ -3,6 +3,7 @@
 /// Small things about text that several rooms need: numbers as text and back whatever the locale,
 /// quoting, and the nearest known word for "did you mean".
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,6 +30,9 @@ std::optional<double> ParseTypedNumber(std::string_view text);
 /// The text in double quotes as JSON writes it, control characters escaped. With `limit` > 0 at
 /// most that many bytes of the text (whole characters), then "...".
 std::string Quote(std::string_view text, std::size_t limit = 0);
+
+/// Characters of UTF-8 text: the columns that it takes where each is one wide.
+std::size_t CountCharacters(std::string_view text);
 
 /// The word of `known` that is so near to `word` that it was probably meant, or empty. Capitals,
 /// '-' and '_' make no difference.
