@@ -13,6 +13,7 @@ from window import ViewerTest, load_x11, scene
 LARGE = ("-f", scene("pinned2"), "--set", "cloth.num_width_points=300", "--set", "cloth.num_height_points=300", "--set",
          "cloth.pinned=[[0,0],[299,0]]", "--set", "simulation.steps_per_frame=300", "--history", "0")
 ATTEMPTS = 3  # The machine does other things as well.
+SHARE = 0.1   # Of the time of a frame that an answer takes at most.
 
 
 class Response(ViewerTest):
@@ -46,14 +47,15 @@ class Response(ViewerTest):
             viewer.key("p", "pause")
             first = viewer.wait("state", where=lambda state: state["frame"] >= 1)
             self.assertGreater(first["ms"], 100, "the scene is not slow enough for this test")
+            most = SHARE * first["ms"] / 1000
             medians = []
             for _ in range(ATTEMPTS):
                 times = [self.seconds(viewer, (x11, xtst, display), "space", "reset_camera") for _ in range(9)]
                 medians.append(statistics.median(times))
-                if medians[-1] < 0.05:
+                if medians[-1] < most:
                     break
             print(f"a key takes {min(medians) * 1000:.1f} ms, a frame {first['ms']:.0f} ms")
-            self.assertLess(min(medians), 0.05, medians)
+            self.assertLess(min(medians), most, medians)
 
             # Turned about, the view is drawn many times per frame.
             for attempt in range(ATTEMPTS):
