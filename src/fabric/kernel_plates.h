@@ -48,10 +48,11 @@ double PlateForces(const PlateArgs& a) {
   double squares = 0;
   for (int v = a.begin; v < a.end; ++v) {
     if (!a.isPlate[v]) continue;
-    const std::int32_t kind = a.kind[v];
+    const SharedRowsView<double>& rows = a.rows;
+    const std::int32_t kind = rows.kind[v];
     const Vec3* const at = a.x + v;
     WaySums ways(*at);
-    for (std::int32_t k = a.first[kind]; k < a.first[kind + 1]; ++k) ways.Add(a.value[k], at[a.offset[k]]);
+    for (std::int32_t k = rows.first[kind]; k < rows.first[kind + 1]; ++k) ways.Add(rows.value[k], at[rows.offset[k]]);
     ways.StoreSum(a.force[v]);
     squares += ways.Squares();
   }

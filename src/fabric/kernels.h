@@ -69,11 +69,7 @@ struct WindArgs {
 /// Some rows of the matrix of plates.
 struct PlateArgs {
   int begin, end;
-  // As SharedRows has them [N/m]:
-  const std::int32_t* kind;
-  const std::int32_t* first;
-  const std::int32_t* offset;
-  const double* value;
+  SharedRowsView<double> rows;  ///< [N/m]
   const std::uint8_t* isPlate;  ///< Per row: 0 where it does not count.
   const Vec3* x;                ///< Positions [m].
   Vec3* force;                  ///< Out, in rows that count: the row times the positions [N].

@@ -127,7 +127,7 @@ void Multigrid::SetUp(const SystemMatrix& fine, std::vector<Prolongation> hierar
     const BlockPattern& pattern = above->pattern();
     assert(P.rows() == pattern.rows());
     level.restriction = MakeRestriction(P);
-    level.matrix.SetUp(CoarsePattern(pattern, P), CoarseScalars(*above, P, level.restriction));
+    level.matrix.SetUp(CoarsePattern(pattern, P, level.restriction), CoarseScalars(*above, P, level.restriction));
     const BlockPattern& coarse = level.matrix.pattern();
 
     // Rows of T: the nodes of all columns, ascending. Only those of rows that P' reads.

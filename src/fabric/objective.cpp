@@ -180,14 +180,10 @@ double Objective::BendingEnergy(std::span<const Vec3> y) {
 /// may count from the vertex itself, and the energy is -½ sum over pairs of q |yi - yj|²: only short ways cancel, and
 /// small bends count far from the origin.
 double Objective::PlateEnergy(std::span<const Vec3> y) {
-  const ScalarMatrix& q = model_.plates;
   return -0.25 * Sum(model_.vertexCount, [&](int begin, int end) {
     return kernels_.plateForces({.begin = begin,
                                  .end = end,
-                                 .kind = q.kind.data(),
-                                 .first = q.first.data(),
-                                 .offset = q.offset.data(),
-                                 .value = q.value.data(),
+                                 .rows = model_.plates.View(),
                                  .isPlate = model_.plate.data(),
                                  .x = y.data(),
                                  .force = scratch_.first.data()});

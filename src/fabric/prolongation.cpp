@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/lists.h"
+
 namespace percale::fabric {
 namespace {
 
@@ -204,23 +206,19 @@ Prolongation CoarsenByAggregates(const BlockPattern& graph, std::span<const std:
 }  // namespace
 
 Restriction MakeRestriction(const Prolongation& p) {
-  // The entries of P by column.
-  std::vector<std::int32_t> first(p.nodes + 1, 0), row(p.column.size()), place(p.column.size());
-  for (const std::int32_t node : p.column) ++first[node + 1];
-  for (int node = 0; node < p.nodes; ++node) first[node + 1] += first[node];
-  std::vector<std::int32_t> next(first.begin(), first.end() - 1);
-  for (int r = 0; r < p.rows(); ++r) {
-    for (std::int32_t e = p.first[r]; e < p.first[r + 1]; ++e) {
-      const std::int32_t at = next[p.column[e]]++;
-      row[at] = r, place[at] = e - p.first[r];
-    }
-  }
+  std::vector<std::int32_t> rowOf;  // per entry
+  rowOf.reserve(p.column.size());
+  for (int row = 0; row < p.rows(); ++row) rowOf.resize(p.first[row + 1], row);
+  const Lists byNode = ListBy(p.nodes, p.column.size(), [&](std::size_t e) { return p.column[e]; });
   Restriction restriction;
   RowSharer<std::int32_t> sharer(p.nodes);
   std::vector<std::pair<std::int32_t, std::int32_t>> entries;  // of a node
   for (int node = 0; node < p.nodes; ++node) {
     entries.clear();
-    for (std::int32_t e = first[node]; e < first[node + 1]; ++e) entries.push_back({row[e], place[e]});
+    for (std::int32_t k = byNode.first[node]; k < byNode.first[node + 1]; ++k) {
+      const std::int32_t e = byNode.entry[k], row = rowOf[e];
+      entries.push_back({row, e - p.first[row]});
+    }
     const std::int32_t least = entries.empty() ? 0 : entries.front().first;
     restriction.firstRow.push_back(least);
     sharer.Append(entries, least);
@@ -230,23 +228,18 @@ Restriction MakeRestriction(const Prolongation& p) {
   return restriction;
 }
 
-BlockPattern CoarsePattern(const BlockPattern& pattern, const Prolongation& p) {
-  // The fine rows of each node, then what they are coupled with.
-  std::vector<std::vector<std::int32_t>> rowsOf(p.nodes);
-  for (int row = 0; row < p.rows(); ++row) {
-    for (std::int32_t k = p.first[row]; k < p.first[row + 1]; ++k) rowsOf[p.column[k]].push_back(row);
-  }
+BlockPattern CoarsePattern(const BlockPattern& pattern, const Prolongation& p, const Restriction& restriction) {
   PatternMaker coarse(p.nodes);
   std::vector<std::int32_t> seenBy(p.nodes, -1), columns;
   for (int node = 0; node < p.nodes; ++node) {
     columns.clear();
-    for (const std::int32_t row : rowsOf[node]) {
+    restriction.ForRow(p, node, [&](std::int32_t row, Real) {
       pattern.columns.ForRow(row, [&](std::int32_t other, std::int32_t) {
         for (std::int32_t e = p.first[other]; e < p.first[other + 1]; ++e) {
           if (std::exchange(seenBy[p.column[e]], node) != node) columns.push_back(p.column[e]);
         }
       });
-    }
+    });
     std::sort(columns.begin(), columns.end());
     coarse.Append(columns);
   }
@@ -347,7 +340,7 @@ std::vector<Prolongation> MakeHierarchy(const BlockPattern& pattern, const Mater
   if (levels.empty()) return AggregateHierarchy(pattern, pinned);
   if (levels.back().nodes > kFewNodes) {
     BlockPattern graph = pattern;
-    for (const Prolongation& p : levels) graph = CoarsePattern(graph, p);
+    for (const Prolongation& p : levels) graph = CoarsePattern(graph, p, MakeRestriction(p));
     for (Prolongation& p : AggregateHierarchy(graph)) levels.push_back(std::move(p));
   }
   return levels;

@@ -35,13 +35,9 @@ struct Restriction {
   /// Calls visit(row, weight) for each of a node's weights.
   template <class Visit>
   void ForRow(const Prolongation& p, std::int32_t node, Visit&& visit) const {
-    const auto kind = static_cast<std::size_t>(entry.kind[static_cast<std::size_t>(node)]);
-    const std::int32_t least = firstRow[static_cast<std::size_t>(node)];
-    const auto end = static_cast<std::size_t>(entry.first[kind + 1]);
-    for (auto e = static_cast<std::size_t>(entry.first[kind]); e < end; ++e) {
-      const std::int32_t row = least + entry.offset[e];
-      visit(row, p.weight[static_cast<std::size_t>(p.first[static_cast<std::size_t>(row)] + entry.value[e])]);
-    }
+    entry.ForRow(node, firstRow[static_cast<std::size_t>(node)], [&](std::int32_t row, std::int32_t place) {
+      visit(row, p.weight[static_cast<std::size_t>(p.first[static_cast<std::size_t>(row)] + place)]);
+    });
   }
   std::size_t MemoryBytes() const { return firstRow.capacity() * sizeof(std::int32_t) + entry.MemoryBytes(); }
 };
@@ -57,7 +53,8 @@ struct MaterialMesh {
 };
 
 /// The pattern of P' A P for A of `pattern`.
-BlockPattern CoarsePattern(const BlockPattern& pattern, const Prolongation& prolongation);
+BlockPattern CoarsePattern(const BlockPattern& pattern, const Prolongation& prolongation,
+                           const Restriction& restriction);
 
 /// Levels by material coordinates: over each panel a grid with a node per 4 x 4 vertices or so, bilinear in between,
 /// then the same over those nodes and so on; a vertex of several panels takes the mean of them. `vertices`: how many

@@ -35,9 +35,14 @@ struct SharedRows {
   /// Calls visit(column, value) for the entries of a row.
   template <class Visit>
   void ForRow(std::int32_t row, Visit&& visit) const {
+    ForRow(row, row, visit);
+  }
+  /// The same where columns count from `origin` instead of the row's own number.
+  template <class Visit>
+  void ForRow(std::int32_t row, std::int32_t origin, Visit&& visit) const {
     const auto k = static_cast<std::size_t>(kind[static_cast<std::size_t>(row)]);
     for (auto e = static_cast<std::size_t>(first[k]); e < static_cast<std::size_t>(first[k + 1]); ++e)
-      visit(row + offset[e], value[e]);
+      visit(origin + offset[e], value[e]);
   }
   SharedRowsView<T> View() const { return {kind.data(), first.data(), offset.data(), value.data()}; }
   std::size_t MemoryBytes() const {

@@ -327,14 +327,16 @@ void SystemMatrix::ToDense(double* dense) const {
     for (int k = 0; k < 9; ++k) dense[(3 * row + k % 3) * n + 3 * column + k / 3] += static_cast<double>(block[k]);
   };
   for (int row = 0; row < rows(); ++row) {
+    const Real* block = DiagonalBlock(row);
     pattern_.columns.ForRow(row, [&](std::int32_t column, std::int32_t) {
       if (column < row) return;
-      const Real* block = Block(pattern_.Find(row, column));
       add(row, column, block);
-      if (column == row) return;
-      std::array<Real, 9> transposed;
-      for (int c = 0; c < 9; ++c) transposed[c] = block[c % 3 * 3 + c / 3];
-      add(column, row, transposed.data());
+      if (column > row) {
+        std::array<Real, 9> transposed;
+        for (int c = 0; c < 9; ++c) transposed[c] = block[c % 3 * 3 + c / 3];
+        add(column, row, transposed.data());
+      }
+      block += 9;
     });
     ForRest(row, [&](std::int32_t column, Real value) {
       for (int r = 0; r < 3; ++r) dense[(3 * row + r) * n + 3 * column + r] += static_cast<double>(value);

@@ -249,10 +249,7 @@ TEST_CASE("the force of plates is the product of their matrix, where they are") 
     std::vector<Vec3> force(x.size(), {7, 7, 7});
     const double sum = kernels->plateForces({.begin = 3,
                                              .end = sheet.vertices(),
-                                             .kind = matrix.kind.data(),
-                                             .first = matrix.first.data(),
-                                             .offset = matrix.offset.data(),
-                                             .value = matrix.value.data(),
+                                             .rows = matrix.View(),
                                              .isPlate = isPlate.data(),
                                              .x = x.data(),
                                              .force = force.data()});
