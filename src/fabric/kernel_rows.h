@@ -59,36 +59,56 @@ class BlockSum {
 };
 #endif
 
+inline void AddExtra(const RowsArgs& a, int row, BlockSum& sum) {
+  for (std::int32_t e = a.extraBegin[row]; e < a.extraEnd[row]; ++e) {
+    sum.Add(a.extraBlocks + 9 * static_cast<std::int64_t>(e), a.x + 3 * static_cast<std::int64_t>(a.extraColumn[e]));
+  }
+}
+
+/// Calls store(row + r, H x at that row) for every r: rows whose columns and constants are alike, so that where to look
+/// is found once for all. Sums by fold expressions: those of a loop would go through memory.
+template <int... r, class Store>
+inline void MultiplyAlike(const RowsArgs& a, int row, std::integer_sequence<int, r...>, Store&& store) {
+  BlockSum sum[sizeof...(r)];
+  const Real* const at = a.x + 3 * static_cast<std::int64_t>(row);
+  const std::int32_t columns = a.columns.kind[row], end = a.columns.first[columns + 1];
+  std::int32_t k = a.columns.first[columns];
+  for (; a.columns.offset[k] < 0; ++k) {
+    const std::int64_t offset = a.columns.offset[k], mirrored = a.columns.value[k];
+    const std::int32_t* const first = a.storedFirst + row + offset;
+    (sum[r].AddTransposed(a.blocks + 9 * (first[r] + mirrored), at + 3 * (offset + r)), ...);
+  }
+  const Real* block = a.blocks + 9 * static_cast<std::int64_t>(a.storedFirst[row]);
+  const std::int64_t stored = end - k;
+  for (; k < end; ++k, block += 9) {
+    const std::int64_t offset = a.columns.offset[k];
+    (sum[r].Add(block + 9 * r * stored, at + 3 * (offset + r)), ...);
+  }
+  if (a.extraBlocks) (AddExtra(a, row + r, sum[r]), ...);
+  Floats4 rest[sizeof...(r)];
+  const std::int32_t constant = a.constant.kind[row];
+  for (std::int64_t e = a.constant.first[constant] + stored - 1; e < a.constant.first[constant + 1]; ++e) {
+    const std::int64_t offset = a.constant.offset[e];
+    const Floats4 value(a.constant.value[e]);
+    ((rest[r] += Floats4::Load(at + 3 * (offset + r)) * value), ...);
+  }
+  (store(row + r, sum[r].Total() + rest[r]), ...);
+}
+
 /// Calls store(row, H x at that row) for each row.
 template <class Store>
 inline void ForRows(const RowsArgs& a, Store&& store) {
-  for (int row = a.begin; row < a.end; ++row) {
-    BlockSum sum;
-    const Real* const at = a.x + 3 * static_cast<std::int64_t>(row);
-    const std::int32_t columns = a.columns.kind[row];
-    std::int32_t k = a.columns.first[columns];
-    for (; a.columns.offset[k] < 0; ++k) {
-      const std::int32_t block = a.storedFirst[row + a.columns.offset[k]] + a.columns.value[k];
-      sum.AddTransposed(a.blocks + 9 * static_cast<std::int64_t>(block),
-                        at + 3 * static_cast<std::int64_t>(a.columns.offset[k]));
+  const auto alike = [&](int row, int other) {
+    return a.columns.kind[row] == a.columns.kind[other] && a.constant.kind[row] == a.constant.kind[other];
+  };
+  for (int row = a.begin; row < a.end;) {
+    if (row + 1 < a.end && alike(row, row + 1)) {
+      MultiplyAlike(a, row, std::integer_sequence<int, 0, 1>(), store);
+      row += 2;
+    } else {
+      MultiplyAlike(a, row, std::integer_sequence<int, 0>(), store);
+      ++row;
     }
-    const Real* block = a.blocks + 9 * static_cast<std::int64_t>(a.storedFirst[row]);
-    for (; k < a.columns.first[columns + 1]; ++k, block += 9) {
-      sum.Add(block, at + 3 * static_cast<std::int64_t>(a.columns.offset[k]));
-    }
-    if (a.extraBlocks) {
-      for (std::int32_t e = a.extraBegin[row]; e < a.extraEnd[row]; ++e) {
-        sum.Add(a.extraBlocks + 9 * static_cast<std::int64_t>(e),
-                a.x + 3 * static_cast<std::int64_t>(a.extraColumn[e]));
-      }
-    }
-    Floats4 rest;
-    const std::int32_t constant = a.constant.kind[row];
-    const std::int32_t inside = a.storedFirst[row + 1] - a.storedFirst[row] - 1;
-    for (std::int32_t e = a.constant.first[constant] + inside; e < a.constant.first[constant + 1]; ++e) {
-      rest += Floats4::Load(at + 3 * static_cast<std::int64_t>(a.constant.offset[e])) * Floats4(a.constant.value[e]);
-    }
-    store(row, sum.Total() + rest);
   }
 }
 

@@ -2,6 +2,8 @@
 // first. No inline function that other files compile too may be called here: the linker would be free to keep the copy
 // that not every processor runs. Templates are safe with a Pack of this namespace's Level.
 
+#include <utility>
+
 #include "fabric/kernels.h"
 #include "math/pack.h"
 
