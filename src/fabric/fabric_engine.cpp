@@ -259,11 +259,13 @@ void FabricEngine::Solve() {
   Objective& objective = solver_.objective();
   objective.Begin({.h = h_, .start = begin_, .before = before_, .fall = Fall(), .loads = loads_, .free = free_});
   double least = objective.Energy(next_);
-  if (objective.Energy(ahead) < least) {
+  const double ofAhead = objective.Energy(ahead);
+  if (ofAhead < least) {
     std::swap(ahead, next_);
-  } else if (model_.Cloths() > 1) {
+    Minimise(scene_.simulation.newtonIterations, ofAhead);
+  } else {
     // Each cloth for itself, so that none that flies freely is held by what happens to another.
-    for (int c = 0; c < model_.Cloths(); ++c) {
+    for (int c = 0; model_.Cloths() > 1 && c < model_.Cloths(); ++c) {
       const auto exchange = [&] {
         const int* const first = &model_.firstVertex[Index(c)];
         std::swap_ranges(next_.begin() + first[0], next_.begin() + first[1], ahead.begin() + first[0]);
@@ -275,16 +277,16 @@ void FabricEngine::Solve() {
       else
         exchange();
     }
+    Minimise(scene_.simulation.newtonIterations, objective.Energy(next_));
   }
-  Minimise(scene_.simulation.newtonIterations);
   previous_ = begin_;
 }
 
-/// Goes on from next_.
-void FabricEngine::Minimise(int iterations) {
+/// Goes on from next_. `energy`: what the objective gave for it, when it was asked last.
+void FabricEngine::Minimise(int iterations, double energy) {
   const SimulationSettings& settings = scene_.simulation;
   const NewtonResult result = solver_.Solve(
-      next_, solver_.objective().Energy(next_),
+      next_, energy,
       {.maxIterations = iterations, .maxLinearIterations = settings.linearIterations, .tolerance = settings.tolerance});
   counts_.newtonIterations += result.iterations;
   counts_.linearIterations += result.linearIterations;
@@ -316,7 +318,7 @@ bool FabricEngine::TryMove(int depth) {
     position_ = next_;
     contact_->FindPlanes(begin_, position_, ahead, free_, h_, firm);
     for (std::size_t p = 0; p < pinTo_.size(); ++p) next_[Index(pins_.All()[p].point)] = pinTo_[p];
-    Minimise(std::max(kMoreIterations, scene_.simulation.newtonIterations / 2));
+    Minimise(std::max(kMoreIterations, scene_.simulation.newtonIterations / 2), solver_.objective().Energy(next_));
     report = contact_->Move(position_, next_, maySplit && round + 1 < kMostRounds);
   }
   if (depth < kMostStretchSplits && StretchesSuddenly()) return Rewind();
@@ -342,9 +344,10 @@ bool FabricEngine::Rewind() {
 }
 
 /// Whether a triangle is much longer in next_ than as the step began.
-bool FabricEngine::StretchesSuddenly() const {
-  std::atomic<bool> suddenly = false;
+bool FabricEngine::StretchesSuddenly() {
   constexpr double kSquare = kMostStretching * kMostStretching;
+  if (!(solver_.objective().GreatestStretch(next_).square > kSquare)) return false;
+  std::atomic<bool> suddenly = false;
   ForRange(executor_, model_.triangles.size(), [&](int t) {
     const double now = SquaredStretch(Index(t), next_);
     if (now > kSquare && now > kSquare * SquaredStretch(Index(t), begin_)) suddenly = true;
@@ -468,20 +471,13 @@ VertexRef FabricEngine::RefOf(int vertex) const {
 double FabricEngine::SquaredStretch(std::size_t t, std::span<const Vec3> y) const {
   const Triangle& triangle = model_.triangles[t];
   const auto x = [&](std::int32_t v) { return From<double>(y[Index(v)]); };
-  const DeformationGradient<double> f = Deformation(model_.Rest(t), x(triangle.a), x(triangle.b), x(triangle.c));
-  const double uu = Dot(f.u, f.u), vv = Dot(f.v, f.v), uv = Dot(f.u, f.v);
-  return 0.5 * (uu + vv) + std::sqrt(0.25 * (uu - vv) * (uu - vv) + uv * uv);
+  return fabric::SquaredStretch(Deformation(model_.Rest(t), x(triangle.a), x(triangle.b), x(triangle.c)));
 }
 
-Stretch FabricEngine::GreatestStretch() const {
-  double greatest = 0;  // squared
-  int at = -1;
-  for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
-    const double square = SquaredStretch(t, position_);
-    if (square > greatest) greatest = square, at = model_.triangles[t].a;
-  }
-  if (at < 0) return {};
-  return {std::sqrt(greatest), RefOf(at)};
+Stretch FabricEngine::GreatestStretch() {
+  const MembraneStretch greatest = solver_.objective().GreatestStretch(position_);
+  if (greatest.triangle < 0) return {};
+  return {std::sqrt(greatest.square), RefOf(model_.triangles[Index(greatest.triangle)].a)};
 }
 
 double FabricEngine::ElasticEnergy() {

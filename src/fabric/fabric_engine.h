@@ -74,7 +74,7 @@ class FabricEngine {
     contact_->WriteState(touches, obstacles);
   }
   /// The greatest stretch of a triangle: the larger singular value of its deformation gradient.
-  Stretch GreatestStretch() const;
+  Stretch GreatestStretch();
   double ElasticEnergy();                           ///< [J]
   std::span<const double> Masses(int cloth) const;  ///< Of its vertices [kg].
   /// Where its vertices started [m]; stays valid as long as the engine.
@@ -89,10 +89,10 @@ class FabricEngine {
   Vec3 Fall() const { return scene_.simulation.gravity * (h_ * h_); }
   Vec3 Predicted(std::size_t vertex) const;
   void BeginLoads();
-  void Minimise(int iterations);
+  void Minimise(int iterations, double energy);
   bool TryMove(int depth);
   bool Rewind();
-  bool StretchesSuddenly() const;
+  bool StretchesSuddenly();
   double SquaredStretch(std::size_t triangle, std::span<const Vec3> y) const;
   void SplitStep(double from, double to, int depth);
   void UpdatePins();

@@ -47,6 +47,12 @@ struct MembraneArgs {
   Real* hessian;   ///< Per triangle the blocks (a, b), (b, c), (c, a), column by column [N/m].
 };
 
+/// The triangle that is stretched most, the first of such.
+struct MembraneStretch {
+  double square = 0;  ///< Of the larger singular value of its deformation gradient.
+  int triangle = -1;  ///< -1: none is stretched at all.
+};
+
 /// What pulls at a vertex beside gravity over one step, quadratic in its way w = y - x: energy ½ wᵀ B w - f·w [J].
 struct VertexLoad {
   SymmetricMatrix3<double> stiffness;  ///< B, without negative eigenvalues [N/m].
@@ -115,6 +121,8 @@ struct Kernels {
   const char* name;
   /// Writes startStrain.
   void (*membraneStrain)(const MembraneArgs&);
+  /// Returns the greatest.
+  MembraneStretch (*membraneStretch)(const MembraneArgs&);
   /// Returns the sum [J].
   double (*membraneEnergy)(const MembraneArgs&);
   /// Writes the gradient.

@@ -29,6 +29,7 @@ extern const Kernels kKernels;
 const Kernels kKernels = {
     .name = PERCALE_KERNELS_NAME,
     .membraneStrain = MembraneStrains,
+    .membraneStretch = MembraneStretches,
     .membraneEnergy = MembraneEnergy,
     .membraneGradient = MembraneDerivatives<false>,
     .membraneTangent = MembraneDerivatives<true>,

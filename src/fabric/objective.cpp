@@ -39,6 +39,7 @@ Objective::Objective(const FabricModel& model, const BlockPattern& pattern, cons
       batches_.push_back({c, t, std::min(t + kRowsPerChunk, end)});
     }
   }
+  batchStretch_.resize(batches_.size());
   const std::size_t live = std::min(triangles, Index(window_.live()));
   triangleGradient_.resize(3 * live);
   triangleHessian_.assign(kHessianReals * live + 1, 0);
@@ -160,6 +161,17 @@ double Objective::MembraneEnergy(std::span<const Vec3> y) {
   double sum = 0;
   for (int batch = 0; batch < batches; ++batch) sum += chunkSums_[Index(batch)];
   return sum;
+}
+
+MembraneStretch Objective::GreatestStretch(std::span<const Vec3> y) {
+  executor_.ForChunks(static_cast<int>(batches_.size()), [&](int batch) {
+    batchStretch_[Index(batch)] = kernels_.membraneStretch(Arguments(y, batches_[Index(batch)]));
+  });
+  MembraneStretch greatest;
+  for (const MembraneStretch& stretch : batchStretch_) {
+    if (stretch.square > greatest.square) greatest = stretch;
+  }
+  return greatest;
 }
 
 double Objective::BendingEnergy(std::span<const Vec3> y) {

@@ -69,6 +69,9 @@ class Objective {
   /// Of membrane and bending alone [J].
   double ElasticEnergy(std::span<const Vec3> y);
 
+  /// Of all triangles at y.
+  MembraneStretch GreatestStretch(std::span<const Vec3> y);
+
  private:
   /// Triangles of one cloth that one chunk of a loop covers.
   struct Batch {
@@ -110,6 +113,7 @@ class Objective {
   std::vector<Hinge<double>> hinge_;
   VertexScratch scratch_;  // first: per vertex of a plate, the force where PlateEnergy was called last [N]
   std::vector<double> chunkSums_;
+  std::vector<MembraneStretch> batchStretch_;
 };
 
 }  // namespace percale::fabric

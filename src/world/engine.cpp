@@ -37,7 +37,7 @@ constexpr EngineTable CommonTable() {
   table.writeState = [](void* e, int cloth, const WorldState::Cloth& state, double time) {
     Self<E>(e).WriteState(cloth, state.positions, state.previous, state.anchors, time);
   };
-  table.greatestStretch = [](const void* e) { return Self<E>(e).GreatestStretch(); };
+  table.greatestStretch = [](void* e) { return Self<E>(e).GreatestStretch(); };
   table.elasticEnergy = [](void* e) { return Self<E>(e).ElasticEnergy(); };
   table.masses = [](const void* e, int cloth) { return Self<E>(e).Masses(cloth); };
   table.start = [](const void* e, int cloth) { return Self<E>(e).Start(cloth); };

@@ -54,7 +54,7 @@ struct EngineTable {
                        std::span<const Vec3> obstacles) = [](void*, std::span<const Touch>, std::span<const Vec3>) {};
   /// The state of one cloth at `time` [s], which may be that of another World with the same cloths.
   void (*writeState)(void*, int cloth, const WorldState::Cloth&, double time) = nullptr;
-  Stretch (*greatestStretch)(const void*) = nullptr;
+  Stretch (*greatestStretch)(void*) = nullptr;
   double (*elasticEnergy)(void*) = nullptr;                             ///< [J]
   std::span<const double> (*masses)(const void*, int cloth) = nullptr;  ///< Of its vertices [kg].
   /// Where a cloth's vertices started [m]. The span stays valid as long as the engine's state.

@@ -188,6 +188,36 @@ TEST_CASE("strains at the start of a step are those of the triangles, and no oth
   }
 }
 
+TEST_CASE("the greatest stretch is that of the triangle that is longest in one direction, on all processors") {
+  for (const int count : kCounts) {
+    for (const Kernels* kernels : RunnableKernels()) {
+      CAPTURE(kernels->name);
+      Triangles s(count);
+      MembraneStretch expected;
+      for (int t = 0; t < count; ++t) {
+        const DeformationGradient<double> f = s.F(Index(t));
+        // Of all directions, and then nearer and nearer to the best of them.
+        const auto along = [&](double angle) {
+          const Vector3<double> d = f.u * std::cos(angle) + f.v * std::sin(angle);
+          return Dot(d, d);
+        };
+        double best = 0;
+        for (double width = 1.6, step = 0.1; step > 1e-9; width = 2 * step, step /= 10) {
+          const double centre = best;
+          for (double angle = centre - width; angle <= centre + width; angle += step) {
+            if (along(angle) > along(best)) best = angle;
+          }
+        }
+        if (along(best) > expected.square) expected = {along(best), t};
+      }
+      const MembraneStretch greatest =
+          kernels->membraneStretch(s.Arguments(0, count, MembraneLaw::StVenantKirchhoff, 0));
+      CHECK(greatest.triangle == expected.triangle);
+      CHECK(greatest.square == doctest::Approx(expected.square).epsilon(1e-12));
+    }
+  }
+}
+
 TEST_CASE("the wind's kernel agrees with the load of each triangle") {
   const double h = 1.0 / 90;
   const Air<double> air{1.2, 1.1, 0.01, 0.3};

@@ -47,6 +47,13 @@ DeformationGradient<T> Deformation(const RestTriangle<T>& rest, const Vector3<T>
   return {e1 * rest.inverse[0] + e2 * rest.inverse[2], e1 * rest.inverse[1] + e2 * rest.inverse[3]};
 }
 
+/// The square of the larger singular value of F: how long the longest of all directions has become.
+template <class T>
+T SquaredStretch(const DeformationGradient<T>& f) {
+  const T uu = Dot(f.u, f.u), vv = Dot(f.v, f.v), uv = Dot(f.u, f.v);
+  return T(0.5) * (uu + vv) + Sqrt(T(0.25) * (uu - vv) * (uu - vv) + uv * uv);
+}
+
 /// Energy per area and its derivatives by fu and fv [N/m].
 template <class T>
 struct MembraneStress {
