@@ -43,6 +43,7 @@ struct FabricTable {
 struct FabricScale {
   int side = 0;                  ///< Vertices.
   double one = 0, many = 0;      ///< Time per vertex and frame on one thread, on several [ns].
+  double meanwhile = 0;          ///< The first of a sheet of 10,000 vertices, between the frames of this one [ns].
   double newton = 0;             ///< Newton's iterations per frame.
   double linear = 0;             ///< Linear iterations per frame.
   std::uint64_t peakMemory = 0;  ///< Of the whole program so far [byte]; 0 where the system does not say.
