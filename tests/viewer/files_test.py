@@ -25,7 +25,8 @@ class Shaders(ViewerTest):
             since = viewer.mark()
             for _ in SHADERS:
                 viewer.key("bracketright", "next_shader")
-            viewer.key("bracketleft", "previous_shader")
+            last = viewer.key("bracketleft", "previous_shader")
+            viewer.wait("shader", last)
             seen = [event["name"] for event in viewer.events[since:] if event["event"] == "shader"]
             self.assertEqual(seen, SHADERS[1:] + SHADERS[:1] + SHADERS[-1:])
             # Each has drawn at least one picture without complaint.

@@ -213,7 +213,8 @@ class Settings(ViewerTest):
                 viewer.key("p", "pause")
                 since = viewer.mark()
                 for _ in range(6):
-                    viewer.key("bracketright", "next_shader")
+                    last = viewer.key("bracketright", "next_shader")
+                viewer.wait("shader", last)
                 taken = [event for event in viewer.events[since:] if event["event"] == "shader"]
                 self.assertEqual(len(taken), 6)
                 # A window that waits for the simulation would have taken one key in a frame of it.
