@@ -30,7 +30,10 @@ constexpr int kSizes[] = {32, 64, 100};  // for error against time
 constexpr int kScaleSizes[] = {32, 100, 316, 1000};
 constexpr int kMeasuredFrames = 20;  // the last ones, over whose mean stretch methods are compared
 constexpr int kScaleFrames = 10;     // the same for all sizes: the cost changes as the sheet falls
-constexpr double kGoal = 0.05;       // of the stretch beyond 1
+// Vertices along a side of the sheet that others are compared with, frame by frame: other work comes and goes in
+// minutes.
+constexpr int kScaleSide = 100;
+constexpr double kGoal = 0.05;  // of the stretch beyond 1
 // Vertices along a side beyond which the direct solver does less, and nothing: it would take minutes.
 constexpr int kSmallDirect = 50, kLargestDirect = 128;
 constexpr double kStiffnesses[] = {1, 8, 64};  // times cotton's
@@ -155,16 +158,20 @@ FabricTable MeasureTable(int side, double stiffness, int threads, int frames) {
   return table;
 }
 
-/// Sheets of other sizes are compared with one of so many vertices along a side, frame by frame: what else a machine
-/// does comes and goes, in minutes.
-constexpr int kScaleSide = 100;
-
 /// The same, begun flat and level, so that it is alike at all sizes: a sheet that starts upright starts with the
 /// course's noise of 1 mm, which is a tenth of an edge at 100 x 100 and all of one at 1000 x 1000.
 Scene SwingingSheet(int side) {
   Scene scene = HangingSheet(side, 1);
   scene.cloths[0].orientation = Orientation::Horizontal;
   return scene;
+}
+
+/// Adds the time per vertex [ns] of a frame of a sheet with `side` vertices along a side.
+StepReport TimedStep(World& world, int side, std::vector<double>& times) {
+  const auto start = std::chrono::steady_clock::now();
+  const StepReport report = world.Step();
+  times.push_back(Seconds(start) * 1e9 / (static_cast<double>(side) * side));
+  return report;
 }
 
 FabricScale MeasureScale(int side, int threads, int frames) {
@@ -177,21 +184,17 @@ FabricScale MeasureScale(int side, int threads, int frames) {
     World world(scene, {.threads = run == 0 ? 1 : threads});
     std::vector<double> times, otherTimes;
     double newton = 0, linear = 0;
-    const auto step = [](World& w, int width, std::vector<double>& to) {
-      const auto start = std::chrono::steady_clock::now();
-      const StepReport report = w.Step();
-      to.push_back(Seconds(start) * 1e9 / (static_cast<double>(width) * width));
-      return report;
-    };
     for (int f = 0; f < frames; ++f) {
-      const StepReport report = step(world, side, times);
+      const StepReport report = TimedStep(world, side, times);
       newton += report.newtonIterations, linear += report.linearIterations;
       if (run > 0) continue;
       other.Reset();
-      for (int k = 0; k < frames; ++k) step(other, kScaleSide, otherTimes);
+      for (int k = 0; k < frames; ++k) TimedStep(other, kScaleSide, otherTimes);
     }
-    (run == 0 ? scale.one : scale.many) = Median(times);
-    if (run == 0) scale.meanwhile = Median(otherTimes);
+    if (run == 0)
+      scale.one = Median(times), scale.meanwhile = Median(otherTimes);
+    else
+      scale.many = Median(times);
     scale.newton = newton / frames, scale.linear = linear / frames;
     hashes[run] = world.StateHash();
   }

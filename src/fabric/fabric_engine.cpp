@@ -258,28 +258,33 @@ void FabricEngine::Solve() {
   contact_->FindPlanes(begin_, position_, ahead, free_, h_);
   Objective& objective = solver_.objective();
   objective.Begin({.h = h_, .start = begin_, .before = before_, .fall = Fall(), .loads = loads_, .free = free_});
-  double least = objective.Energy(next_);
+  const double least = objective.Energy(next_);
   const double ofAhead = objective.Energy(ahead);
   if (ofAhead < least) {
     std::swap(ahead, next_);
     Minimise(scene_.simulation.newtonIterations, ofAhead);
   } else {
-    // Each cloth for itself, so that none that flies freely is held by what happens to another.
-    for (int c = 0; model_.Cloths() > 1 && c < model_.Cloths(); ++c) {
-      const auto exchange = [&] {
-        const int* const first = &model_.firstVertex[Index(c)];
-        std::swap_ranges(next_.begin() + first[0], next_.begin() + first[1], ahead.begin() + first[0]);
-      };
-      exchange();
-      const double energy = objective.Energy(next_);
-      if (energy < least)
-        least = energy;
-      else
-        exchange();
-    }
+    if (model_.Cloths() > 1) ExchangeCloths(ahead, least);
     Minimise(scene_.simulation.newtonIterations, objective.Energy(next_));
   }
   previous_ = begin_;
+}
+
+/// Exchanges the cloths of next_, whose energy is `least`, with those of another start where that gains: each for
+/// itself, so that none that flies freely is held by what happens to another.
+void FabricEngine::ExchangeCloths(std::vector<Vec3>& other, double least) {
+  for (int c = 0; c < model_.Cloths(); ++c) {
+    const auto exchange = [&] {
+      const int* const first = &model_.firstVertex[Index(c)];
+      std::swap_ranges(next_.begin() + first[0], next_.begin() + first[1], other.begin() + first[0]);
+    };
+    exchange();
+    const double energy = solver_.objective().Energy(next_);
+    if (energy < least)
+      least = energy;
+    else
+      exchange();
+  }
 }
 
 /// Goes on from next_. `energy`: what the objective gave for it, when it was asked last.
@@ -349,8 +354,13 @@ bool FabricEngine::StretchesSuddenly() {
   if (!(solver_.objective().GreatestStretch(next_).square > kSquare)) return false;
   std::atomic<bool> suddenly = false;
   ForRange(executor_, model_.triangles.size(), [&](int t) {
-    const double now = SquaredStretch(Index(t), next_);
-    if (now > kSquare && now > kSquare * SquaredStretch(Index(t), begin_)) suddenly = true;
+    const auto square = [&](std::span<const Vec3> y) {
+      const Triangle& triangle = model_.triangles[Index(t)];
+      const auto x = [&](std::int32_t v) { return From<double>(y[Index(v)]); };
+      return SquaredStretch(Deformation(model_.Rest(Index(t)), x(triangle.a), x(triangle.b), x(triangle.c)));
+    };
+    const double now = square(next_);
+    if (now > kSquare && now > kSquare * square(begin_)) suddenly = true;
   });
   return suddenly;
 }
@@ -468,12 +478,6 @@ VertexRef FabricEngine::RefOf(int vertex) const {
 }
 
 /// The square of the larger singular value of a triangle's deformation gradient.
-double FabricEngine::SquaredStretch(std::size_t t, std::span<const Vec3> y) const {
-  const Triangle& triangle = model_.triangles[t];
-  const auto x = [&](std::int32_t v) { return From<double>(y[Index(v)]); };
-  return fabric::SquaredStretch(Deformation(model_.Rest(t), x(triangle.a), x(triangle.b), x(triangle.c)));
-}
-
 Stretch FabricEngine::GreatestStretch() {
   const MembraneStretch greatest = solver_.objective().GreatestStretch(position_);
   if (greatest.triangle < 0) return {};

@@ -89,11 +89,11 @@ class FabricEngine {
   Vec3 Fall() const { return scene_.simulation.gravity * (h_ * h_); }
   Vec3 Predicted(std::size_t vertex) const;
   void BeginLoads();
+  void ExchangeCloths(std::vector<Vec3>& other, double least);
   void Minimise(int iterations, double energy);
   bool TryMove(int depth);
   bool Rewind();
   bool StretchesSuddenly();
-  double SquaredStretch(std::size_t triangle, std::span<const Vec3> y) const;
   void SplitStep(double from, double to, int depth);
   void UpdatePins();
   void StartFolds();

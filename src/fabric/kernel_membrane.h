@@ -125,9 +125,7 @@ inline void ForTriangles(int begin, int end, Body&& body) {
 [[gnu::flatten]] MembraneStretch MembraneStretches(const MembraneArgs& a) {
   MembraneStretch greatest;
   ForTriangles(a.begin, a.end, [&](int first, int count) {
-    const Edges edges = LoadEdges(a.triangles, a.x, first, count);
-    const Doubles square =
-        SquaredStretch(Deformation(LoadRest(a, first, count), Vector3<Doubles>{}, edges.first, edges.second));
+    const Doubles square = SquaredStretch(LoadTriangles(a, first, count).f);
     for (int i = 0; i < count; ++i) {
       if (square[i] > greatest.square) greatest = {square[i], first + i};
     }
