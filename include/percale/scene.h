@@ -207,7 +207,7 @@ struct SimulationSettings {
   HashFunction hash = HashFunction::Exact;
   PlaneResponse planeResponse = PlaneResponse::Interpolate;
   int newtonIterations = 3;  ///< Engine::Fabric: at most so many per step, >= 1.
-  int linearIterations = 6;  ///< Engine::Fabric: at most so many in each of those, >= 1.
+  int linearIterations = 6;  ///< Engine::Fabric: so many times that at most in all of those, >= 1.
   double tolerance = 1e-3;   ///< Engine::Fabric: a step is converged when the next correction would be this
                              ///< share of its first, > 0.
 };

@@ -20,6 +20,9 @@ constexpr double kLinearTolerance = 0.01;
 constexpr double kLinearGain = 0.04;
 /// The same in contact, where the sides that push each other are most of r'z, and what they carry along is least.
 constexpr double kTouchingTolerance = 1e-3, kTouchingGain = 0.01;
+/// A correction gained what was foretold if it gained that within this share. What is left then is the error of linear
+/// systems, which are better solved longer than anew.
+constexpr double kForetold = 0.2;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -66,7 +69,9 @@ NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonS
   gradient_ = std::span(objective_.scratch().first).first(y.size());
   trial_ = std::span(objective_.scratch().second).first(y.size());
   double first = 0;
-  while (result.iterations < settings.maxIterations) {
+  bool foretold = false;
+  int linearLeft = settings.maxIterations * settings.maxLinearIterations;
+  while (result.iterations < settings.maxIterations && linearLeft >= settings.maxLinearIterations) {
     const bool touched = matrix_.extra().any;
     energy += objective_.GradientAndTangent(y, gradient_, matrix_);
     const bool touches = matrix_.extra().any;
@@ -79,12 +84,14 @@ NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonS
       const Vec3& g = gradient_[Index(v)];
       r[0] = static_cast<Real>(-g.x), r[1] = static_cast<Real>(-g.y), r[2] = static_cast<Real>(-g.z);
     });
-    const SolveResult linear = conjugateGradient_.Solve(matrix_, multigrid_, right_.data(), direction_.data(),
-                                                        {.maxIterations = settings.maxLinearIterations,
-                                                         .tolerance = touches ? kTouchingTolerance : kLinearTolerance,
-                                                         .leastGain = touches ? kTouchingGain : kLinearGain},
-                                                        executor_);
+    const SolveResult linear =
+        conjugateGradient_.Solve(matrix_, multigrid_, right_.data(), direction_.data(),
+                                 {.maxIterations = foretold ? linearLeft : settings.maxLinearIterations,
+                                  .tolerance = touches ? kTouchingTolerance : kLinearTolerance,
+                                  .leastGain = touches ? kTouchingGain : kLinearGain},
+                                 executor_);
     result.linearIterations += linear.iterations;
+    linearLeft -= linear.iterations;
     const auto [slope, square] = MeasureDirection();
     const double alpha = slope < 0 ? SearchLine(y, energy, slope) : 0;
     if (alpha == 0) {
@@ -93,6 +100,7 @@ NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonS
       break;
     }
     ForRange(executor_, y.size(), [&](int v) { y[Index(v)] = trial_[Index(v)]; });
+    foretold = alpha == 1 && std::abs(energy - trialEnergy_ + 0.5 * slope) <= kForetold * 0.5 * -slope;
     energy = trialEnergy_;
     ++result.iterations;
     const double length = alpha * std::sqrt(square / model_.vertexCount);

@@ -15,9 +15,10 @@
 namespace percale::fabric {
 
 struct NewtonSettings {
-  int maxIterations = 4;        ///< >= 1.
-  int maxLinearIterations = 8;  ///< In each of those, >= 1.
-  double tolerance = 1e-3;      ///< Done when a correction is that share of the first one, > 0.
+  int maxIterations = 4;  ///< >= 1.
+  /// In each of those, >= 1; and those that are left of all, where the correction before gained what was foretold.
+  int maxLinearIterations = 8;
+  double tolerance = 1e-3;  ///< Done when a correction is that share of the first one, > 0.
 };
 
 struct NewtonResult {

@@ -561,7 +561,7 @@ std::vector<Parameter> MakeTable() {
       .help = "At most so many corrections of a step; 3 keep up with real time."}),
     Simulation<&S::linearIterations>({.name = "linear_iterations", .label = "Linear iterations", .min = 1, .max = 10000,
       .typicalMin = 1, .typicalMax = 50, .engine = kFabric,
-      .help = "At most so many iterations of the linear solver for each correction."}),
+      .help = "At most so many iterations of the linear solver for each correction; where one gained what was foretold, the next may make all that are left."}),
     Simulation<&S::tolerance>({.name = "tolerance", .label = "Tolerance", .min = 0, .max = 1, .minExclusive = true,
       .typicalMin = 1e-6, .typicalMax = 0.1, .logarithmic = true, .engine = kFabric,
       .help = "A step has converged when the next correction would be this share of the first."}),

@@ -146,6 +146,26 @@ TEST_CASE("each iteration lowers the energy: more of them never end higher") {
   }
 }
 
+TEST_CASE("where corrections gain what was foretold, fewer of them make more linear iterations") {
+  Stepper s(HangingSheet(Fabric::Cotton, 25));
+  std::vector<Vec3> minimum = s.Begin();
+  s.fast.Solve(minimum, s.fast.objective().Energy(minimum),
+               {.maxIterations = 60, .maxLinearIterations = 60, .tolerance = 1e-4});
+  for (const bool near : {true, false}) {
+    CAPTURE(near);
+    std::vector<Vec3> y = minimum;
+    const double size = near ? 1e-6 : 0.02;  // m: the energy is a parabola there, or not at all
+    SplitMix64 random(4);
+    for (std::size_t v = 0; v < y.size(); ++v) {
+      if (s.free[v]) y[v] += Vec3{random.NextUnit(), random.NextUnit(), random.NextUnit()} * size;
+    }
+    const NewtonResult result = s.fast.Solve(y, s.fast.objective().Energy(y),
+                                             {.maxIterations = 3, .maxLinearIterations = 2, .tolerance = 1e-12});
+    CHECK(result.linearIterations == 6);
+    CHECK(result.iterations == (near ? 2 : 3));
+  }
+}
+
 TEST_CASE("cloth does not become rubber: few iterations stretch a hanging sheet no more than a converged run" *
           doctest::skip(test::kSanitized)) {
   double stretch[3];
