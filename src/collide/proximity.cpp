@@ -14,19 +14,6 @@ constexpr double kClose = 0.05;
 /// Takes rounding off what may be advanced.
 constexpr double kSafe = 1 - 1e-9;
 
-/// A bound of how fast the two things approach each other.
-double Approach(PairKind kind, const Corners<double>& way) {
-  const Vector3<double> mean = (way[0] + way[1] + way[2] + way[3]) * 0.25;
-  double squared[4];
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Vector3<double> own = way[k] - mean;
-    squared[k] = Dot(own, own);
-  }
-  if (kind == PairKind::VertexTriangle)
-    return std::sqrt(squared[0]) + std::sqrt(std::max({squared[1], squared[2], squared[3]}));
-  return std::sqrt(std::max(squared[0], squared[1])) + std::sqrt(std::max(squared[2], squared[3]));
-}
-
 /// Whether one direction is seen to part a pair with the gap `floor` where it is now and where it will be then, and so
 /// all the way between: that in which they are apart now, or then, or one between the two.
 bool ArePartedThroughout(PairKind kind, const Corners<double>& x, const PairState& now, const Corners<double>& next,

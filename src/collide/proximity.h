@@ -4,7 +4,9 @@
 /// promised here rests on where their closest points were found: a gap is measured along a direction, and two convex
 /// things with a gap along any direction are at least that far apart.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "collide/contact_mesh.h"
@@ -134,6 +136,19 @@ void StatesOf(PairKind kind, std::span<const VertexQuad> pairs, std::span<const 
 
 /// Where a pair is after the share t of its ways.
 Corners<double> After(const Corners<double>& x, const Corners<double>& way, double t);
+
+/// By how much the two things of a pair can come nearer to each other on their ways, at most [m].
+inline double Approach(PairKind kind, const Corners<double>& way) {
+  const Vector3<double> mean = (way[0] + way[1] + way[2] + way[3]) * 0.25;
+  double squared[4];
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vector3<double> own = way[k] - mean;
+    squared[k] = Dot(own, own);
+  }
+  if (kind == PairKind::VertexTriangle)
+    return std::sqrt(squared[0]) + std::sqrt(std::max({squared[1], squared[2], squared[3]}));
+  return std::sqrt(std::max(squared[0], squared[1])) + std::sqrt(std::max(squared[2], squared[3]));
+}
 
 /// Whether a pair, as it is at the start, keeps at least the gap `floor` > 0 all along its ways: because they are
 /// short, or because the plane between them parts it at the end too. Between two such times a plane parts it as well:

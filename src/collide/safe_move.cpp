@@ -1,12 +1,15 @@
 #include "collide/safe_move.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace percale {
 namespace {
 
 constexpr int kPairsPerChunk = 1024;
+/// Of so many pairs at a time it is seen whether they are near: they take 6 MB, and each thread of some has chunks.
+constexpr std::size_t kPairsAtOnce = 64 * kPairsPerChunk;
 /// Sweeps from which on what fails goes half as far, and no farther at all.
 constexpr int kHalveFrom = 10, kStopFrom = 25;
 /// Searches from which on every vertex counts as cut, so that no more is needed; and after which a move that may give
@@ -42,17 +45,16 @@ SafeMove::SafeMove(const ContactMesh& mesh, const Executor& executor)
 }
 
 void SafeMove::Clear() {
-  for (NearPairs& pairs : pairs_) pairs.vertex = {};
+  for (NearPairs& pairs : pairs_) pairs.Resize(0);
 }
 
 std::size_t SafeMove::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  std::size_t sum =
-      finder_.MemoryBytes() + bytes(limited_) + bytes(least_) + bytes(cut_) + bytes(changed_) + bytes(next_);
-  for (std::size_t kind = 0; kind < 2; ++kind) {
-    const NearPairs& pairs = pairs_[kind];
-    sum += bytes(pairs.distance) + bytes(pairs.start) + bytes(pairs.exempt) + bytes(shares_[kind]);
-  }
+  std::size_t sum = finder_.MemoryBytes() + bytes(limited_) + bytes(least_) + bytes(cut_) + bytes(changed_) +
+                    bytes(next_) + bytes(someEnd_);
+  for (const NearPairs* pairs : {&pairs_[0], &pairs_[1], &some_})
+    sum += bytes(pairs->vertex) + bytes(pairs->distance) + bytes(pairs->start);
+  for (const std::vector<double>& shares : shares_) sum += bytes(shares);
   return sum;
 }
 
@@ -81,27 +83,67 @@ void SafeMove::ForPairs(Body&& body) {
   }
 }
 
-/// All pairs that might meet, and how they are at the start.
+/// All pairs that might meet or be in contact soon, and how they are at the start.
 void SafeMove::Search(const Ways& ways, std::span<const Vec3> gone, const ContactDistances& distances) {
   finder_.Find({.start = ways.start, .way = gone, .cut = cut_}, distances.half, distances.clothPairs);
   for (std::size_t kind = 0; kind < 2; ++kind) {
-    NearPairs& pairs = pairs_[kind];
-    pairs.vertex = kind == 0 ? finder_.vertexTriangle() : finder_.edgeEdge();
-    pairs.distance.resize(pairs.size());
-    pairs.start.resize(pairs.size());
-    pairs.exempt.resize(pairs.size());
-    shares_[kind].assign(pairs.size(), 1);
+    const std::span<const VertexQuad> found = kind == 0 ? finder_.vertexTriangle() : finder_.edgeEdge();
+    pairs_[kind].Resize(0);
+    for (std::size_t first = 0; first < found.size(); first += kPairsAtOnce)
+      Keep(kind, found.subspan(first, std::min(kPairsAtOnce, found.size() - first)), ways, distances);
+    shares_[kind].assign(pairs_[kind].size(), 1);
   }
-  ForPairs([&](std::size_t kind, std::size_t begin, std::size_t end) {
-    NearPairs& pairs = pairs_[kind];
-    StatesOf(kKinds[kind], pairs.vertex.subspan(begin, end - begin), ways.start,
-             std::span(pairs.start).subspan(begin, end - begin));
-    for (std::size_t p = begin; p < end; ++p) {
-      pairs.distance[p] = DistanceOf(kKinds[kind], pairs.vertex[p], distances);
-      pairs.exempt[p] = untangler_ && untangler_->LetsPass(kKinds[kind], pairs.vertex[p]) ? 1 : 0;
-    }
-  });
   std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});
+}
+
+/// Of some pairs that were found those that are to be minded. Most are not: boxes of neighbours overlap. What stays
+/// farther apart than soon in contact, even if it goes the same ways twice, is not; unless one of it was cut, for then
+/// the others may leave it behind.
+void SafeMove::Keep(std::size_t kind, std::span<const VertexQuad> found, const Ways& ways,
+                    const ContactDistances& distances) {
+  const std::size_t count = found.size();
+  const int chunks = static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk);
+  some_.Resize(count);
+  someEnd_.resize(Index(chunks));
+  const auto staysFar = [&](const VertexQuad& v, const PairState& now) {
+    if (cut_[Index(v[0])] | cut_[Index(v[1])] | cut_[Index(v[2])] | cut_[Index(v[3])]) return false;
+    const std::int32_t one = mesh_.body[Index(v[0])], other = mesh_.body[Index(v[3])];
+    const double core = distances.CoreOf(one, other);
+    double distance = distances.half[Index(one)] + distances.half[Index(other)] - core;
+    if (one == other) {
+      // What are the closest points now is as near in the flat mesh as any, or less so.
+      Vector3<double> way;
+      for (std::size_t k = 0; k < 4; ++k) way += From<double>(mesh_.place[Index(v[k])]) * now.weight[k];
+      distance = std::min(distance, kOwnShare * std::sqrt(Dot(way, way)));
+    }
+    const double room = now.gap - core - kSoon * distance;
+    return room > 0 && 2 * Approach(kKinds[kind], Gather(ways.way, v)) < room;
+  };
+  executor_.ForChunks(chunks, [&](int chunk) {
+    const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(count, begin + kPairsPerChunk);
+    std::size_t next = begin;
+    StatesOf(kKinds[kind], found.subspan(begin, end - begin), ways.start,
+             std::span(some_.start).subspan(begin, end - begin));
+    for (std::size_t p = begin; p < end; ++p) {
+      const VertexQuad& v = found[p];
+      const PairState state = some_.start[p];
+      if (staysFar(v, state)) continue;
+      if (untangler_ && untangler_->LetsPass(kKinds[kind], v)) continue;
+      some_.vertex[next] = v;
+      some_.distance[next] = DistanceOf(kKinds[kind], v, distances);
+      some_.start[next++] = state;
+    }
+    someEnd_[Index(chunk)] = next;
+  });
+  NearPairs& pairs = pairs_[kind];
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    const auto append = [&](const auto& from, auto& to) {
+      to.insert(to.end(), from.data() + Index(chunk) * kPairsPerChunk, from.data() + someEnd_[Index(chunk)]);
+    };
+    append(some_.vertex, pairs.vertex);
+    append(some_.distance, pairs.distance);
+    append(some_.start, pairs.start);
+  }
 }
 
 /// Tests the pairs of vertices that changed, and shortens the ways of those that fail. Returns how many do.
@@ -113,7 +155,7 @@ std::int64_t SafeMove::Cut(const Ways& ways, const ContactDistances& distances, 
       const VertexQuad& v = pairs.vertex[p];
       if (!(changed_[Index(v[0])] | changed_[Index(v[1])] | changed_[Index(v[2])] | changed_[Index(v[3])])) continue;
       const double gap = pairs.start[p].gap;
-      if (!(gap > 0) || pairs.exempt[p]) continue;
+      if (!(gap > 0)) continue;
       Corners<double> way;
       for (std::size_t k = 0; k < 4; ++k) way[k] = From<double>(ways.way[Index(v[k])]) * ways.share[Index(v[k])];
       const double core = distances.CoreOf(mesh_.body[Index(v[0])], mesh_.body[Index(v[3])]);
@@ -173,6 +215,27 @@ bool SafeMove::LimitWays(const Ways& ways, const ContactDistances& distances) {
 void SafeMove::List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances) {
   std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
   Search({start, way, {}}, way, distances);
+}
+
+bool SafeMove::AnyNear(std::span<const Vec3> start, const ContactDistances& distances) {
+  std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
+  limited_.assign(start.size(), {});
+  finder_.Find({.start = start, .way = limited_, .cut = cut_}, distances.half, distances.clothPairs);
+  std::atomic<bool> any = false;
+  for (const PairKind kind : kKinds) {
+    const std::span<const VertexQuad> found =
+        kind == PairKind::VertexTriangle ? finder_.vertexTriangle() : finder_.edgeEdge();
+    executor_.ForChunks(static_cast<int>((found.size() + kPairsPerChunk - 1) / kPairsPerChunk), [&](int chunk) {
+      const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(found.size(), begin + kPairsPerChunk);
+      for (std::size_t p = begin; p < end && !any; ++p) {
+        const VertexQuad& v = found[p];
+        const double reach =
+            distances.half[Index(mesh_.body[Index(v[0])])] + distances.half[Index(mesh_.body[Index(v[3])])];
+        if (!(StateOf(kind, Gather(start, v)).gap >= reach)) any = true;
+      }
+    });
+  }
+  return any;
 }
 
 SafeMoveReport SafeMove::Move(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances,

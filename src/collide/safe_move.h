@@ -29,14 +29,17 @@ struct ContactDistances {
   }
 };
 
+/// Two things that are nearer than so many times their distance of contact may be in contact soon.
+inline constexpr double kSoon = 2;
+
 /// What is near a way: two things each.
 struct NearPairs {
-  std::span<const VertexQuad> vertex;
-  std::vector<double> distance;      ///< Below which they are in contact [m].
-  std::vector<PairState> start;      ///< As the move began.
-  std::vector<std::uint8_t> exempt;  ///< 1: may pass through each other.
+  std::vector<VertexQuad> vertex;
+  std::vector<double> distance;  ///< Below which they are in contact [m].
+  std::vector<PairState> start;  ///< As the move began.
 
   std::size_t size() const { return vertex.size(); }
+  void Resize(std::size_t count) { vertex.resize(count), distance.resize(count), start.resize(count); }
 };
 
 struct SafeMoveReport {
@@ -65,7 +68,11 @@ class SafeMove {
   /// Lists what is near a way that is gone already.
   void List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances);
 
-  /// All that came near in the last move or on the last way listed, and more.
+  /// Whether any two things without a vertex in common are nearer than the halves of their bodies.
+  bool AnyNear(std::span<const Vec3> start, const ContactDistances& distances);
+
+  /// All that was in contact or soon to be in the last move or on the last way listed, or would be after such a way
+  /// once more; and more. Not what may pass through each other.
   const NearPairs& vertexTriangle() const { return pairs_[0]; }
   const NearPairs& edgeEdge() const { return pairs_[1]; }
   /// Forgets them.
@@ -85,6 +92,7 @@ class SafeMove {
 
   /// Where all may go as far as `gone`.
   void Search(const Ways& ways, std::span<const Vec3> gone, const ContactDistances& distances);
+  void Keep(std::size_t kind, std::span<const VertexQuad> found, const Ways& ways, const ContactDistances& distances);
   template <class Body>
   void ForPairs(Body&& body);
   bool LimitWays(const Ways& ways, const ContactDistances& distances);
@@ -94,10 +102,12 @@ class SafeMove {
   const Executor& executor_;
   PairFinder finder_;
   const Untangler* untangler_ = nullptr;
-  NearPairs pairs_[2];             // by kind
-  std::vector<double> shares_[2];  // per pair, of the last test
-  std::vector<Vec3> limited_;      // per vertex: the way that it may go; none before LimitWays
-  std::vector<double> least_;      // per vertex: of the pairs that fail in a sweep; none before any did
+  NearPairs pairs_[2];                // by kind
+  NearPairs some_;                    // of some that are found at a time: what each chunk keeps, from where it begins
+  std::vector<std::size_t> someEnd_;  // per chunk
+  std::vector<double> shares_[2];     // per pair, of the last test
+  std::vector<Vec3> limited_;         // per vertex: the way that it may go; none before LimitWays
+  std::vector<double> least_;         // per vertex: of the pairs that fail in a sweep; none before any did
   std::vector<std::uint8_t> cut_, changed_, next_;  // per vertex
 };
 

@@ -1,6 +1,7 @@
 #include "fabric/contact_step.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -19,8 +20,8 @@ constexpr double kCoarse = 10;
 constexpr double kLookBack = 10;
 /// So many are untangled at a time.
 constexpr int kMostTangled = 1 << 20;
-/// How near cloth may come to a solid, and how near it feels it soon, over the distance.
-constexpr double kLeastGap = 0.2, kSoon = 2;
+/// How near cloth may come to a solid, over the distance.
+constexpr double kLeastGap = 0.2;
 
 std::size_t Index(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -203,10 +204,11 @@ void ContactStep::FindRoundSurfaces() {
 void ContactStep::FindPlanes(std::span<const Vec3> begin, std::span<const Vec3> now, std::span<const Vec3> ahead,
                              std::span<const std::uint8_t> free, double h, bool firm) {
   const std::size_t cloth = now.size();
-  for (std::size_t v = 0; v < cloth; ++v) {
+  ForRange(executor_, cloth, [&](int vertex) {
+    const std::size_t v = Index(vertex);
     start_[v] = now[v];
     way_[v] = ahead[v] - now[v];
-  }
+  });
   for (std::size_t v = 0; v < obstacle_.size(); ++v) {
     start_[cloth + v] = obstacle_[v];
     way_[cloth + v] = obstacleTarget_[v] - obstacle_[v];
@@ -340,9 +342,7 @@ bool ContactStep::NothingIsNear() {
   if (least > distance_) return false;  // too much would be near
   ContactDistances reach = distances_;
   for (double& half : reach.half) half = std::max(half, least);
-  std::fill(way_.begin(), way_.end(), Vec3{});
-  safeMove_.List(start_, way_, reach);
-  return safeMove_.vertexTriangle().size() == 0 && safeMove_.edgeEdge().size() == 0;
+  return !safeMove_.AnyNear(start_, reach);
 }
 
 /// Nothing is tangled, so far as is known.
@@ -385,10 +385,12 @@ void ContactStep::WriteState(std::span<const Touch> touches, std::span<const Vec
 }
 
 std::int64_t ContactStep::CountSqueezed(std::span<const Vec3> y) const {
-  std::int64_t count = 0;
-  for (const SolidStep& solid : solids_) {
-    for (const Vec3& at : y) count += DistanceTo(solid.end, at).distance < 0 ? 1 : 0;
-  }
+  std::atomic<std::int64_t> count = 0;
+  ForRange(executor_, y.size(), [&](int v) {
+    for (const SolidStep& solid : solids_) {
+      if (DistanceTo(solid.end, y[Index(v)]).distance < 0) ++count;
+    }
+  });
   for (std::size_t v = 0; v < obstacle_.size(); ++v) count += obstacle_[v] == obstacleTarget_[v] ? 0 : 1;
   return count;
 }

@@ -6,14 +6,12 @@
 namespace percale::fabric {
 namespace {
 
-constexpr int kPairsPerChunk = 1024;
+constexpr int kPairsPerChunk = 1024, kContactsPerChunk = 256;
 /// Of so many pairs at a time the planes are found: they take 15 MB, and each thread of some has a few chunks.
 constexpr std::size_t kPairsAtOnce = 64 * kPairsPerChunk;
 /// A pull at what is tangled is as strong as so many contacts: of 80 heaps of sheets 4 were still tangled after 200
 /// frames with 1, none with 4, one with 10.
 constexpr double kPull = 4;
-/// Pairs that are not in contact, but nearer than so many times its distance, have a plane as well: they may be soon.
-constexpr double kSoon = 2;
 /// What is round meets triangles and edges where they come nearer to it than their own vertices, which feel it too: in
 /// full where that is nearer by this share of the distance of contact.
 constexpr double kFullSag = 0.25;
@@ -73,6 +71,14 @@ Vector3<double> Sum(const Contact& c, std::span<const Vec3> y) {
     if (c.vertex[k] >= 0) sum += From<double>(y[Index(c.vertex[k])]) * c.weight[k];
   }
   return sum;
+}
+
+double EnergyOf(const Contact& c, std::span<const Vec3> y) {
+  if (!c.seen) return 0;
+  const Vector3<double> sum = Sum(c, y);
+  const double depth = c.distance - Dot(c.normal, sum) - c.offset;
+  const Vector3<double> slide = Slide(c, sum);
+  return 0.5 * (depth > 0 || c.held ? c.stiffness * depth * depth : 0) + 0.5 * c.drag * Dot(slide, slide);
 }
 
 }  // namespace
@@ -166,8 +172,8 @@ void Contacts::Fit(double k, Contact& c) {
 
 std::size_t Contacts::MemoryBytes() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  return bytes(triangles_) + bytes(border_) + bytes(contacts_) + bytes(kept_) + bytes(found_) + bytes(states_) +
-         bytes(terms_) + memory_.Bytes();
+  return bytes(triangles_) + bytes(border_) + bytes(contacts_) + bytes(found_) + bytes(foundEnd_) + bytes(states_) +
+         bytes(terms_) + bytes(chunkSums_) + memory_.Bytes();
 }
 
 void Contacts::ReadMemory(std::vector<Touch>& touches) const {
@@ -193,7 +199,7 @@ double Contacts::FrictionOf(const ContactSurface& a, const ContactSurface& b) co
 }
 
 /// Goes on with the friction of the step before.
-void Contacts::Remember(Contact& contact) {
+void Contacts::Remember(Contact& contact) const {
   const Stick* stick = memory_.Find(contact.key);
   if (stick == nullptr) return;
   contact.hold = Tangential(stick->hold, contact.normal);
@@ -208,21 +214,23 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs) {
 
 void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last) {
   const std::size_t count = last - first;
+  const int chunks = static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk);
   found_.resize(count);
-  kept_.resize(count);
   states_.resize(count);
-  executor_.ForChunks(static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk), [&](int chunk) {
+  foundEnd_.resize(Index(chunks));
+  executor_.ForChunks(chunks, [&](int chunk) {
     const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(count, begin + kPairsPerChunk);
-    StatesOf(kind, pairs.vertex.subspan(first + begin, end - begin), step_.start,
+    std::size_t& next = foundEnd_[Index(chunk)];
+    next = begin;
+    StatesOf(kind, std::span(pairs.vertex).subspan(first + begin, end - begin), step_.start,
              std::span(states_).subspan(begin, end - begin));
     for (std::size_t p = begin; p < end; ++p) {
       const VertexQuad& vertex = pairs.vertex[first + p];
       const PairState& now = states_[p];
       const double distance = pairs.distance[first + p];
-      kept_[p] = 0;
       const ContactSurface& a = step_.surfaces[Index(mesh_.body[Index(vertex[0])])];
       const ContactSurface& b = step_.surfaces[Index(mesh_.body[Index(vertex[3])])];
-      if (!(now.gap > 0) || pairs.exempt[first + p]) continue;
+      if (!(now.gap > 0)) continue;
       const double core = a.core + b.core, solid = std::min(core, now.gap + kDeepest * distance);
       const double gap = now.gap - solid;
       Corners<double> x, way;
@@ -243,8 +251,7 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first
       double counts = ShareOf(kind, vertex, plane.weight);
       if (core > 0) counts *= std::clamp(SagOf(kind, at, plane, a.core > 0) / (kFullSag * distance), 0.0, 1.0);
       if (counts == 0) continue;
-      kept_[p] = 1;
-      Contact& c = found_[p];
+      Contact& c = found_[next];
       c = {};
       c.key = {kind == PairKind::VertexTriangle ? ContactKey::Kind::VertexTriangle : ContactKey::Kind::EdgeEdge,
                vertex};
@@ -274,13 +281,13 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first
       double ahead = -solid;
       for (std::size_t k = 0; k < 4; ++k) ahead += c.weight[k] * Dot(c.normal, x[k] + way[k]);
       Start(gap, distance, distance - ahead, counts, c);
-      if (!(c.stiffness > 0)) kept_[p] = 0;
       c.friction = FrictionOf(a, b);
-      Remember(c);
+      if (c.stiffness > 0) ++next;
     }
   });
-  for (std::size_t p = 0; p < count; ++p) {
-    if (kept_[p]) contacts_.push_back(found_[p]);
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    const Contact* const found = found_.data();
+    contacts_.insert(contacts_.end(), found + Index(chunk) * kPairsPerChunk, found + foundEnd_[Index(chunk)]);
   }
 }
 
@@ -319,24 +326,29 @@ void Contacts::AddPlane(const ContactKey& key, std::int32_t vertex, double gap, 
   const Vec3 ahead = step_.start[Index(vertex)] + step_.way[Index(vertex)];
   Start(gap, distance, distance - Dot(normal, From<double>(ahead) - point), 1, c);
   c.friction = FrictionOf(own, surface);
-  Remember(c);
 }
 
-double Contacts::Energy(std::span<const Vec3> y) const {
+/// Sums energyOf(contact) over all, in order.
+template <class EnergyOf>
+double Contacts::SumEnergies(EnergyOf&& energyOf) {
+  const std::size_t count = contacts_.size();
+  chunkSums_.assign((count + kContactsPerChunk - 1) / kContactsPerChunk, 0);
+  executor_.ForChunks(static_cast<int>(chunkSums_.size()), [&](int chunk) {
+    const std::size_t begin = Index(chunk) * kContactsPerChunk, end = std::min(count, begin + kContactsPerChunk);
+    for (std::size_t c = begin; c < end; ++c) chunkSums_[Index(chunk)] += energyOf(contacts_[c]);
+  });
   double energy = 0;
-  for (const Contact& c : contacts_) {
-    if (!c.seen) continue;
-    const Vector3<double> sum = Sum(c, y);
-    const double depth = c.distance - Dot(c.normal, sum) - c.offset;
-    if (depth > 0 || c.held) energy += 0.5 * c.stiffness * depth * depth;
-    const Vector3<double> slide = Slide(c, sum);
-    energy += 0.5 * c.drag * Dot(slide, slide);
-  }
+  for (const double part : chunkSums_) energy += part;
   return energy;
 }
 
+double Contacts::Energy(std::span<const Vec3> y) {
+  return SumEnergies([&](const Contact& c) { return EnergyOf(c, y); });
+}
+
 double Contacts::Update(std::span<const Vec3> y, const SystemMatrix& matrix) {
-  for (Contact& c : contacts_) {
+  const double energy = SumEnergies([&](Contact& c) {
+    if (first_) Remember(c);
     const Vector3<double> sum = Sum(c, y);
     const double depth = c.distance - Dot(c.normal, sum) - c.offset;
     c.held = first_ && c.force > 0;
@@ -351,9 +363,10 @@ double Contacts::Update(std::span<const Vec3> y, const SystemMatrix& matrix) {
     const Vector3<double> slide = Slide(c, sum);
     const double length = std::sqrt(Dot(slide, slide)), most = c.friction * c.force;
     c.drag = !c.active ? 0 : most < c.stiffness * length ? most / length : most > 0 ? c.stiffness : 0;
-  }
+    return EnergyOf(c, y);
+  });
   first_ = false;
-  return Energy(y);
+  return energy;
 }
 
 void Contacts::AddGradient(std::span<const Vec3> y, std::span<Vec3> gradient) const {

@@ -81,7 +81,7 @@ class Contacts {
                 const Vector3<double>& point, const Vector3<double>& pointBefore, const ContactSurface& surface);
 
   /// What the planes cost at y [J]: of those that were active at the last Update.
-  double Energy(std::span<const Vec3> y) const;
+  double Energy(std::span<const Vec3> y);
   /// Takes as active what costs energy at y, and friction as the forces there have it; in the first call of a step, as
   /// those at the end of the last step. Returns the energy. `matrix`: the second derivative of all else, from which
   /// follows how stiff contacts have to be.
@@ -109,7 +109,9 @@ class Contacts {
   void Start(double gap, double reach, double approach, double counts, Contact& contact) const;
   static void Fit(double k, Contact& contact);
   double FrictionOf(const ContactSurface& a, const ContactSurface& b) const;
-  void Remember(Contact& contact);
+  void Remember(Contact& contact) const;
+  template <class EnergyOf>
+  double SumEnergies(EnergyOf&& energyOf);
   void AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last);
 
   const ContactMesh& mesh_;
@@ -118,10 +120,12 @@ class Contacts {
   std::vector<std::uint8_t> border_;     // per vertex: 1 at a border
   Step step_;
   std::vector<Contact> contacts_;
-  std::vector<std::uint8_t> kept_;  // per pair while they are added, some at a time
-  std::vector<Contact> found_;
+  // While pairs are added, some at a time:
   std::vector<PairState> states_;
+  std::vector<Contact> found_;         // of each chunk's pairs, from where the chunk begins
+  std::vector<std::size_t> foundEnd_;  // per chunk
   std::vector<ExtraTerm> terms_;
+  std::vector<double> chunkSums_;
   ContactMemory memory_, nextMemory_;
   bool first_ = true;  // no Update yet in this step
 };

@@ -126,6 +126,25 @@ TEST_CASE("a ball's worth of vertices shot through a sheet stops before it") {
   for (std::size_t v = 196; v < m.way.size(); ++v) CHECK(moved.end[v].z > 0);
 }
 
+TEST_CASE("what moves as one is kept apart where the first of it is stopped") {
+  // Two sheets, one above the other and too far apart to be in contact, fly down. A patch holds a corner of the lower.
+  MovingMesh m;
+  AddSheet(m, 10, kSpacing, kHalf);
+  AddSheet(m, 10, kSpacing, kHalf);
+  AddSheet(m, 2, 0.2 * kSpacing, kHalf);
+  for (std::size_t v = 0; v < 200; ++v) {
+    const double shift = m.mesh.body[v] * kSpacing;
+    m.start[v] += Vec3{0.5 * shift, 0.5 * shift, 0.1 + 0.8 * shift};
+    m.way[v] = {0, 0, -0.8};
+  }
+  for (std::size_t v = 200; v < 204; ++v) m.start[v] -= Vec3{0.1 * kSpacing, 0.1 * kSpacing, 0};
+  const Moved moved = Move(m);
+  CHECK(moved.share[0] < 0.2);
+  CHECK(moved.share[100] < 1);
+  CHECK(moved.share[99] == 1);
+  CHECK(Intersections(m, moved.end) == 0);
+}
+
 TEST_CASE("cloth that nothing is in the way of goes all its way, however fast") {
   MovingMesh m = Stack(12, 1, 0);
   SetShape(m, [](const Vec3& p) { return Drape(p, 11 * kSpacing); });
@@ -148,6 +167,58 @@ TEST_CASE("a vertex without a way stays, and the rest may come as near as the fl
     nearest = std::min(nearest, moved.end[v].z);
   }
   CHECK(nearest <= floor + 0.1 * 2 * kSpacing);
+}
+
+TEST_CASE("what is listed is all that was found and is soon in contact") {
+  const int n = Fewer(24, 14);
+  MovingMesh m;
+  AddSheet(m, n, kSpacing, kHalf);
+  const double width = (n - 1) * kSpacing;
+  SetShape(m, [&](const Vec3& p) { return Layers(p, width, 4, 1.5 * kHalf); });
+  SplitMix64 random(9);
+  for (std::size_t v = 0; v < m.way.size(); ++v) {
+    m.start[v] += RandomVector(random, 0.2 * kHalf);
+    m.way[v] = Vec3{0.3, 0, 0.1} + RandomVector(random, 0.2 * kHalf);  // a flight of little change
+  }
+  const Executor executor(2);
+  const ContactMesh mesh = Clustered(m.mesh);
+  SafeMove safe(mesh, executor);
+  const ContactDistances distances{{kHalf}, true};
+  safe.List(m.start, m.way, distances);
+  const PairSet listed[2] = {Sorted(safe.vertexTriangle().vertex), SortedEdges(safe.edgeEdge().vertex)};
+  PairFinder finder(mesh, executor);
+  finder.Find(m.Motion(), m.reach, true);
+  const PairSet found[2] = {Sorted(finder.vertexTriangle()), SortedEdges(finder.edgeEdge())};
+  std::size_t missed = 0, contacts = 0;
+  for (const PairKind kind : {PairKind::VertexTriangle, PairKind::EdgeEdge}) {
+    const std::size_t number = kind == PairKind::EdgeEdge ? 1 : 0;
+    CHECK(listed[number].size() < 0.8 * static_cast<double>(found[number].size()));
+    for (const VertexQuad& q : found[number]) {
+      double gap = 1;  // the least of some on these ways, gone twice
+      for (const double time : {0.0, 0.5, 1.0, 1.5, 2.0}) {
+        Corners<double> x;
+        for (std::size_t k = 0; k < 4; ++k) x[k] = From<double>(m.start[Index(q[k])] + m.way[Index(q[k])] * time);
+        gap = std::min(gap, StateOf(kind, x).gap);
+      }
+      const double distance = safe.DistanceOf(kind, q, distances);
+      contacts += gap < distance ? 1 : 0;
+      if (gap < kSoon * distance) missed += std::binary_search(listed[number].begin(), listed[number].end(), q) ? 0 : 1;
+    }
+  }
+  CHECK(missed == 0);
+  CHECK(contacts > 100);
+}
+
+TEST_CASE("whether anything is near is whether anything without a common vertex is within reach") {
+  const Executor executor(2);
+  const ContactMesh mesh = Clustered(Stack(8, 2, 0).mesh);
+  SafeMove safe(mesh, executor);
+  for (const double apart : {1.01, 0.99, 0.0}) {
+    CAPTURE(apart);
+    const MovingMesh m = Stack(8, 2, apart * 2 * kHalf);
+    CHECK(safe.AnyNear(m.start, {m.reach, true}) == (apart < 1));
+    CHECK(!safe.AnyNear(m.start, {m.reach, false}));
+  }
 }
 
 TEST_CASE("the floor lets a pair come back as often as it likes") {
