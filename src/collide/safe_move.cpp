@@ -103,7 +103,7 @@ void SafeMove::Keep(std::size_t kind, std::span<const VertexQuad> found, const W
                     const ContactDistances& distances) {
   const std::size_t count = found.size();
   const int chunks = static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk);
-  some_.Resize(count);
+  if (some_.size() < count) some_.Resize(count);
   someEnd_.resize(Index(chunks));
   const auto staysFar = [&](const VertexQuad& v, const PairState& now) {
     if (cut_[Index(v[0])] | cut_[Index(v[1])] | cut_[Index(v[2])] | cut_[Index(v[3])]) return false;

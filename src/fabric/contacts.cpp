@@ -215,8 +215,7 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs) {
 void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last) {
   const std::size_t count = last - first;
   const int chunks = static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk);
-  found_.resize(count);
-  states_.resize(count);
+  if (found_.size() < count) found_.resize(count), states_.resize(count);
   foundEnd_.resize(Index(chunks));
   executor_.ForChunks(chunks, [&](int chunk) {
     const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(count, begin + kPairsPerChunk);

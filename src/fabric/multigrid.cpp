@@ -312,17 +312,18 @@ void Multigrid::SumRows(int rows, ExtraRows& to, const Executor& executor, Visit
     to.column.resize(total + total / 2);
     to.block.resize(9 * to.column.size() + 1);
   }
-  std::int32_t offset = 0;
-  for (int index = 0; index < kExtraParts; ++index) {
+  executor.ForChunks(kExtraParts, [&](int index) {
     const ExtraPart& part = parts_[index];
+    std::int32_t offset = 0;
+    for (int earlier = 0; earlier < index; ++earlier)
+      offset += static_cast<std::int32_t>(parts_[earlier].column.size());
     std::copy(part.column.begin(), part.column.end(), to.column.begin() + offset);
     std::copy(part.block.begin(), part.block.end(), to.block.begin() + 9 * static_cast<std::ptrdiff_t>(offset));
     for (int row = firstRow(index); row < firstRow(index + 1); ++row) {
       to.begin[row] += offset;
       to.end[row] += offset;
     }
-    offset += static_cast<std::int32_t>(part.column.size());
-  }
+  });
   to.any = true;
 }
 
