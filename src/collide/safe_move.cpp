@@ -217,10 +217,8 @@ void SafeMove::List(std::span<const Vec3> start, std::span<const Vec3> way, cons
   Search({start, way, {}}, way, distances);
 }
 
-bool SafeMove::AnyNear(std::span<const Vec3> start, const ContactDistances& distances) {
-  std::fill(cut_.begin(), cut_.end(), std::uint8_t{0});
-  limited_.assign(start.size(), {});
-  finder_.Find({.start = start, .way = limited_, .cut = cut_}, distances.half, distances.clothPairs);
+bool SafeMove::AnyNear(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances) {
+  finder_.Find({.start = start, .way = way, .cut = {}}, distances.half, distances.clothPairs);
   std::atomic<bool> any = false;
   for (const PairKind kind : kKinds) {
     const std::span<const VertexQuad> found =
@@ -231,7 +229,8 @@ bool SafeMove::AnyNear(std::span<const Vec3> start, const ContactDistances& dist
         const VertexQuad& v = found[p];
         const double reach =
             distances.half[Index(mesh_.body[Index(v[0])])] + distances.half[Index(mesh_.body[Index(v[3])])];
-        if (!(StateOf(kind, Gather(start, v)).gap >= reach)) any = true;
+        const double least = StateOf(kind, Gather(start, v)).gap - Approach(kind, Gather(way, v));
+        if (!(least >= reach)) any = true;
       }
     });
   }

@@ -68,8 +68,8 @@ class SafeMove {
   /// Lists what is near a way that is gone already.
   void List(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances);
 
-  /// Whether any two things without a vertex in common are nearer than the halves of their bodies.
-  bool AnyNear(std::span<const Vec3> start, const ContactDistances& distances);
+  /// Whether any two things without a vertex in common may come nearer than the halves of their bodies on their ways.
+  bool AnyNear(std::span<const Vec3> start, std::span<const Vec3> way, const ContactDistances& distances);
 
   /// All that was in contact or soon to be in the last move or on the last way listed, or would be after such a way
   /// once more; and more. Not what may pass through each other.

@@ -342,7 +342,8 @@ bool ContactStep::NothingIsNear() {
   if (least > distance_) return false;  // too much would be near
   ContactDistances reach = distances_;
   for (double& half : reach.half) half = std::max(half, least);
-  return !safeMove_.AnyNear(start_, reach);
+  std::fill(way_.begin(), way_.end(), Vec3{});
+  return !safeMove_.AnyNear(start_, way_, reach);
 }
 
 /// Nothing is tangled, so far as is known.

@@ -215,9 +215,11 @@ TEST_CASE("whether anything is near is whether anything without a common vertex 
   SafeMove safe(mesh, executor);
   for (const double apart : {1.01, 0.99, 0.0}) {
     CAPTURE(apart);
-    const MovingMesh m = Stack(8, 2, apart * 2 * kHalf);
-    CHECK(safe.AnyNear(m.start, {m.reach, true}) == (apart < 1));
-    CHECK(!safe.AnyNear(m.start, {m.reach, false}));
+    MovingMesh m = Stack(8, 2, apart * 2 * kHalf);
+    CHECK(safe.AnyNear(m.start, m.way, {m.reach, true}) == (apart < 1));
+    CHECK(!safe.AnyNear(m.start, m.way, {m.reach, false}));
+    for (std::size_t v = 64; v < 128; ++v) m.way[v].z = -0.1 * kHalf;
+    CHECK(safe.AnyNear(m.start, m.way, {m.reach, true}));
   }
 }
 
