@@ -32,6 +32,19 @@ Corners<double> Gather(std::span<const Vec3> x, const VertexQuad& quad) {
 
 constexpr PairKind kKinds[2] = {PairKind::VertexTriangle, PairKind::EdgeEdge};
 
+int Chunks(std::size_t pairs) {
+  return static_cast<int>((pairs + kPairsPerChunk - 1) / kPairsPerChunk);
+}
+
+/// Calls body(chunk, begin, end) for the chunks of so many pairs.
+template <class Body>
+void ForChunks(const Executor& executor, std::size_t pairs, Body&& body) {
+  executor.ForChunks(Chunks(pairs), [&](int chunk) {
+    const std::size_t begin = Index(chunk) * kPairsPerChunk;
+    body(chunk, begin, std::min(pairs, begin + kPairsPerChunk));
+  });
+}
+
 }  // namespace
 
 double FloorOf(double gap, double distance, double core) {
@@ -60,7 +73,7 @@ std::size_t SafeMove::MemoryBytes() const {
 
 double SafeMove::DistanceOf(PairKind kind, const VertexQuad& quad, const ContactDistances& distances) const {
   const std::int32_t one = mesh_.body[Index(quad[0])], other = mesh_.body[Index(quad[3])];
-  const double distance = distances.half[Index(one)] + distances.half[Index(other)] - distances.CoreOf(one, other);
+  const double distance = distances.Between(one, other) - distances.CoreOf(one, other);
   if (one != other) return distance;
   const Corners<double> place = Gather(mesh_.place, quad);
   // Most pairs lie far apart in the mesh, and that is seen at once.
@@ -75,11 +88,7 @@ double SafeMove::DistanceOf(PairKind kind, const VertexQuad& quad, const Contact
 template <class Body>
 void SafeMove::ForPairs(Body&& body) {
   for (std::size_t kind = 0; kind < 2; ++kind) {
-    const std::size_t count = pairs_[kind].size();
-    executor_.ForChunks(static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk), [&](int chunk) {
-      const std::size_t begin = Index(chunk) * kPairsPerChunk;
-      body(kind, begin, std::min(count, begin + kPairsPerChunk));
-    });
+    ForChunks(executor_, pairs_[kind].size(), [&](int, std::size_t begin, std::size_t end) { body(kind, begin, end); });
   }
 }
 
@@ -101,15 +110,13 @@ void SafeMove::Search(const Ways& ways, std::span<const Vec3> gone, const Contac
 /// the others may leave it behind.
 void SafeMove::Keep(std::size_t kind, std::span<const VertexQuad> found, const Ways& ways,
                     const ContactDistances& distances) {
-  const std::size_t count = found.size();
-  const int chunks = static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk);
-  if (some_.size() < count) some_.Resize(count);
-  someEnd_.resize(Index(chunks));
+  if (some_.size() < found.size()) some_.Resize(found.size());
+  someEnd_.resize(Index(Chunks(found.size())));
   const auto staysFar = [&](const VertexQuad& v, const PairState& now) {
     if (cut_[Index(v[0])] | cut_[Index(v[1])] | cut_[Index(v[2])] | cut_[Index(v[3])]) return false;
     const std::int32_t one = mesh_.body[Index(v[0])], other = mesh_.body[Index(v[3])];
     const double core = distances.CoreOf(one, other);
-    double distance = distances.half[Index(one)] + distances.half[Index(other)] - core;
+    double distance = distances.Between(one, other) - core;
     if (one == other) {
       // What are the closest points now is as near in the flat mesh as any, or less so.
       Vector3<double> way;
@@ -119,8 +126,7 @@ void SafeMove::Keep(std::size_t kind, std::span<const VertexQuad> found, const W
     const double room = now.gap - core - kSoon * distance;
     return room > 0 && 2 * Approach(kKinds[kind], Gather(ways.way, v)) < room;
   };
-  executor_.ForChunks(chunks, [&](int chunk) {
-    const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(count, begin + kPairsPerChunk);
+  ForChunks(executor_, found.size(), [&](int chunk, std::size_t begin, std::size_t end) {
     std::size_t next = begin;
     StatesOf(kKinds[kind], found.subspan(begin, end - begin), ways.start,
              std::span(some_.start).subspan(begin, end - begin));
@@ -136,7 +142,7 @@ void SafeMove::Keep(std::size_t kind, std::span<const VertexQuad> found, const W
     someEnd_[Index(chunk)] = next;
   });
   NearPairs& pairs = pairs_[kind];
-  for (int chunk = 0; chunk < chunks; ++chunk) {
+  for (int chunk = 0; chunk < Chunks(found.size()); ++chunk) {
     const auto append = [&](const auto& from, auto& to) {
       to.insert(to.end(), from.data() + Index(chunk) * kPairsPerChunk, from.data() + someEnd_[Index(chunk)]);
     };
@@ -223,12 +229,10 @@ bool SafeMove::AnyNear(std::span<const Vec3> start, std::span<const Vec3> way, c
   for (const PairKind kind : kKinds) {
     const std::span<const VertexQuad> found =
         kind == PairKind::VertexTriangle ? finder_.vertexTriangle() : finder_.edgeEdge();
-    executor_.ForChunks(static_cast<int>((found.size() + kPairsPerChunk - 1) / kPairsPerChunk), [&](int chunk) {
-      const std::size_t begin = Index(chunk) * kPairsPerChunk, end = std::min(found.size(), begin + kPairsPerChunk);
+    ForChunks(executor_, found.size(), [&](int, std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end && !any; ++p) {
         const VertexQuad& v = found[p];
-        const double reach =
-            distances.half[Index(mesh_.body[Index(v[0])])] + distances.half[Index(mesh_.body[Index(v[3])])];
+        const double reach = distances.Between(mesh_.body[Index(v[0])], mesh_.body[Index(v[3])]);
         const double least = StateOf(kind, Gather(start, v)).gap - Approach(kind, Gather(way, v));
         if (!(least >= reach)) any = true;
       }

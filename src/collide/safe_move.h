@@ -23,6 +23,10 @@ struct ContactDistances {
   std::vector<double>
       core{};  ///< Per body: so much of its half is solid all around its vertices and edges [m]; or none.
 
+  /// Below which two bodies are in contact, with what is solid between them [m].
+  double Between(std::int32_t body, std::int32_t other) const {
+    return half[static_cast<std::size_t>(body)] + half[static_cast<std::size_t>(other)];
+  }
   /// What is solid between two bodies, of their distance [m].
   double CoreOf(std::int32_t body, std::int32_t other) const {
     return core.empty() ? 0 : core[static_cast<std::size_t>(body)] + core[static_cast<std::size_t>(other)];

@@ -214,7 +214,7 @@ void Contacts::AddPairs(PairKind kind, const NearPairs& pairs) {
 
 void Contacts::AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last) {
   const std::size_t count = last - first;
-  const int chunks = static_cast<int>((count + kPairsPerChunk - 1) / kPairsPerChunk);
+  const int chunks = Chunks(static_cast<int>(count), kPairsPerChunk);
   if (found_.size() < count) found_.resize(count), states_.resize(count);
   foundEnd_.resize(Index(chunks));
   executor_.ForChunks(chunks, [&](int chunk) {
@@ -304,8 +304,7 @@ void Contacts::AddTangles(std::span<const Tangle> tangles, const ContactDistance
     };
     put(0, tangle.vertex, 1);
     for (std::size_t k = 0; k < 3; ++k) put(k + 1, tangle.corner[k], -tangle.weight[k]);
-    const double distance = distances.half[Index(mesh_.body[Index(tangle.vertex)])] +
-                            distances.half[Index(mesh_.body[Index(tangle.corner[0])])];
+    const double distance = distances.Between(mesh_.body[Index(tangle.vertex)], mesh_.body[Index(tangle.corner[0])]);
     Start(distance, distance, distance, kPull, c);
     if (c.stiffness > 0) contacts_.push_back(c);
   }
@@ -328,13 +327,15 @@ void Contacts::AddPlane(const ContactKey& key, std::int32_t vertex, double gap, 
 }
 
 /// Sums energyOf(contact) over all, in order.
-template <class EnergyOf>
-double Contacts::SumEnergies(EnergyOf&& energyOf) {
-  const std::size_t count = contacts_.size();
-  chunkSums_.assign((count + kContactsPerChunk - 1) / kContactsPerChunk, 0);
-  executor_.ForChunks(static_cast<int>(chunkSums_.size()), [&](int chunk) {
-    const std::size_t begin = Index(chunk) * kContactsPerChunk, end = std::min(count, begin + kContactsPerChunk);
-    for (std::size_t c = begin; c < end; ++c) chunkSums_[Index(chunk)] += energyOf(contacts_[c]);
+template <class Body>
+double Contacts::SumEnergies(Body&& energyOf) {
+  const int count = static_cast<int>(contacts_.size()), chunks = Chunks(count, kContactsPerChunk);
+  chunkSums_.resize(Index(chunks));
+  executor_.ForChunks(chunks, [&](int chunk) {
+    double sum = 0;
+    const int end = std::min(count, (chunk + 1) * kContactsPerChunk);
+    for (int c = chunk * kContactsPerChunk; c < end; ++c) sum += energyOf(contacts_[Index(c)]);
+    chunkSums_[Index(chunk)] = sum;
   });
   double energy = 0;
   for (const double part : chunkSums_) energy += part;

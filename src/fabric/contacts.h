@@ -110,8 +110,8 @@ class Contacts {
   static void Fit(double k, Contact& contact);
   double FrictionOf(const ContactSurface& a, const ContactSurface& b) const;
   void Remember(Contact& contact) const;
-  template <class EnergyOf>
-  double SumEnergies(EnergyOf&& energyOf);
+  template <class Body>
+  double SumEnergies(Body&& energyOf);
   void AddPairs(PairKind kind, const NearPairs& pairs, std::size_t first, std::size_t last);
 
   const ContactMesh& mesh_;

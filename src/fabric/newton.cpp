@@ -100,7 +100,8 @@ NewtonResult NewtonSolver::Solve(std::span<Vec3> y, double energy, const NewtonS
       break;
     }
     ForRange(executor_, y.size(), [&](int v) { y[Index(v)] = trial_[Index(v)]; });
-    foretold = alpha == 1 && std::abs(energy - trialEnergy_ + 0.5 * slope) <= kForetold * 0.5 * -slope;
+    const double promised = -0.5 * slope;  // by the parabola, at its minimum along the direction
+    foretold = alpha == 1 && std::abs(energy - trialEnergy_ - promised) <= kForetold * promised;
     energy = trialEnergy_;
     ++result.iterations;
     const double length = alpha * std::sqrt(square / model_.vertexCount);
