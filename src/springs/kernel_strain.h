@@ -11,8 +11,8 @@ std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
     walk.Next(a.x, p, step, d);
     Mask near[kKinds];
     for (int kind = 0; kind < kKinds; ++kind) near[kind] = RoughSquare(d[kind]) > Load(a.nearSquared[kind] + p);
-    const std::uint64_t bytes = BytePerLane(near);
-    any |= bytes;
+    std::uint64_t bytes = 0;
+    if (Bits(((near[0] | near[1]) | (near[2] | near[3])) | (near[4] | near[5])) != 0) any |= bytes = BytePerLane(near);
     // What is beyond the last row belongs to others.
     if (end - p >= kLanes) {
       memcpy(a.nearKinds + p, &bytes, kLanes);
@@ -127,18 +127,26 @@ struct StrainSweep {
       a.x[0][q] -= shareQ * ex, a.x[1][q] -= shareQ * ey, a.x[2][q] -= shareQ * ez;
       ++limited;
       moved = true;
-      if ((a.moved[p] += static_cast<float>(shareP * (length - limit))) > a.budget) {
+      if (MovesFar(p, shareP * (length - limit))) {
         kinds |= a.kinds[p] & (~0u << (kind + 1));
         Mark(p, atCreator);
         marked = true;
       }
-      if ((a.moved[q] += static_cast<float>(shareQ * (length - limit))) > a.budget) {
+      if (MovesFar(q, shareQ * (length - limit))) {
         Mark(p, atOther[kind]);
         marked = true;
       }
     }
     if (moved) a.x[0][p] = px, a.x[1][p] = py, a.x[2][p] = pz;
     return marked;
+  }
+
+  /// Adds to what a point was moved by [m]. Returns whether that leads beyond its budget: once, since then all its
+  /// later springs are marked.
+  bool MovesFar(std::int64_t p, double way) {
+    const float before = a.moved[p];
+    a.moved[p] = before + static_cast<float>(way);
+    return a.moved[p] > a.budget && before <= a.budget;
   }
 
   /// Marks springs that come after one that p creates. Where there is none, `kinds` has no bit.

@@ -5,12 +5,13 @@
 /// none of them contracts or reorders arithmetic, so all give the same bits.
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace percale::springs {
 
 /// The rest length that stands where a point creates no spring of a kind.
-inline constexpr double kNoSpringRest = 1e300;
+inline constexpr double kNoSpringRest = std::numeric_limits<double>::infinity();
 /// Kernels read this many numbers after a sheet's positions, rest lengths and forces, and before its rest
 /// lengths and forces, ...
 inline constexpr int kGridPad = 8;

@@ -63,26 +63,31 @@ struct Steps {
   std::int64_t operator[](int kind) const { return of[kind]; }
 };
 
-/// Walks along the line of points, a block after the other. Other ends of springs that are neighbours of
-/// each other are loaded once, since loads that straddle two cache lines take longer than shifts.
+/// Walks along the line of points, a block after the other. Where every load beside a block straddles two cache
+/// lines, other ends of springs that are neighbours of each other are loaded once and shifted.
 struct GridWalk {
+  static constexpr bool kShifts = kLanes == 8;
   Pack3 here, upperRight;  // the last block, and the other ends of its springs to the upper right
 
   /// `first` is where the first block begins.
   GridWalk(const double* const x[3], std::int64_t first, const Steps& step)
       : here(Load3(x, first - kLanes)), upperRight(Load3(x, first - kLanes + step[kUpperRight])) {}
 
-  /// Goes on to the block that begins at `at`. From each of its points to the other ends of its springs:
+  /// Goes on to the block that begins at `at`. From the other ends of its springs to each of its points:
   void Next(const double* const x[3], std::int64_t at, const Steps& step, Pack3 d[kKinds]) {
     const Pack3 last = here, lastUpperRight = upperRight;
     here = Load3(x, at);
-    upperRight = Load3(x, at + step[kUpperRight]);
-    d[kLeft] = Shift<kLanes - 1>(last, here) - here;
-    d[kUp] = Shift<kLanes - 1>(lastUpperRight, upperRight) - here;
-    d[kUpperLeft] = Shift<kLanes - 2>(lastUpperRight, upperRight) - here;
-    d[kUpperRight] = upperRight - here;
-    d[kTwoLeft] = Shift<kLanes - 2>(last, here) - here;
-    d[kTwoUp] = Load3(x, at + step[kTwoUp]) - here;
+    if constexpr (kShifts) {
+      upperRight = Load3(x, at + step[kUpperRight]);
+      d[kLeft] = here - Shift<kLanes - 1>(last, here);
+      d[kUp] = here - Shift<kLanes - 1>(lastUpperRight, upperRight);
+      d[kUpperLeft] = here - Shift<kLanes - 2>(lastUpperRight, upperRight);
+      d[kUpperRight] = here - upperRight;
+      d[kTwoLeft] = here - Shift<kLanes - 2>(last, here);
+      d[kTwoUp] = here - Load3(x, at + step[kTwoUp]);
+    } else {
+      for (int kind = 0; kind < kKinds; ++kind) d[kind] = here - Load3(x, at + step[kind]);
+    }
   }
 };
 

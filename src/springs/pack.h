@@ -34,6 +34,13 @@ inline Pack3 GatherRows3(const double* const axes[3], const std::int32_t* const 
 inline void Store3(double* const axes[3], std::int64_t at, const Pack3& a) {
   Store(axes[0] + at, a.x), Store(axes[1] + at, a.y), Store(axes[2] + at, a.z);
 }
+/// The axes stand one behind the other, `stride` numbers apart.
+inline Pack3 LoadStrided3(const double* from, std::int64_t stride) {
+  return {Load(from), Load(from + stride), Load(from + 2 * stride)};
+}
+inline void StoreStrided3(double* to, std::int64_t stride, const Pack3& a) {
+  Store(to, a.x), Store(to + stride, a.y), Store(to + 2 * stride, a.z);
+}
 inline Pack3 operator+(const Pack3& a, const Pack3& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -127,10 +127,8 @@ inline Pack MaybeFused(Pack a, Pack b, Pack c) {
   return {_mm256_fmadd_pd(a.v, b.v, c.v)};
 }
 inline std::uint64_t BytePerLane(const Mask masks[6]) {
-  unsigned bits[6], any = 0;
-  for (int m = 0; m < 6; ++m) any |= bits[m] = Bits(masks[m]);
   std::uint64_t bytes = 0;
-  for (int m = 0; m < 6 && any != 0; ++m) bytes |= std::uint64_t{bits[m] * 0x00204081 & 0x01010101} << m;
+  for (int m = 0; m < 6; ++m) bytes |= std::uint64_t{Bits(masks[m]) * 0x00204081 & 0x01010101} << m;
   return bytes;
 }
 inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
@@ -142,6 +140,7 @@ inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
   }
   return ~zeros;
 }
+constexpr bool kQuickRoots = false;
 inline bool QuickSqrt(const Pack[6], Pack[6]) {
   return false;
 }

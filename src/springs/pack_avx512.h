@@ -151,14 +151,17 @@ inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
 /// and Tang 2002, "Scientific Computing on Itanium-based Systems", chapter 7: exclusion zones). The test goes
 /// through the nearest ones; the root of the first double after a power of four, the hardest, is left to
 /// the divider.
+constexpr bool kQuickRoots = true;
 inline bool QuickSqrt(const Pack a[6], Pack roots[6]) {
   constexpr int kQuick = 3;  // 0 to 2 and 4 to 6 are 5 to 15 % slower, on Zen 4
-  // Residuals of quick roots between these do not underflow; of no number may the root be zero, for whose
-  // springs there is no direction. Least and greatest leave the multipliers free, which comparisons do not.
+  // Residuals of quick roots between these do not underflow. Least and greatest leave the multipliers free, which
+  // comparisons do not.
   constexpr __mmask8 kAll = 0xff;  // without a mask, gcc 12 warns of what its headers leave undefined
   __m512d least = a[0].v, greatest = a[0].v;
-  for (int s = 1; s < 6; ++s) least = _mm512_maskz_min_pd(kAll, least, a[s].v);
-  for (int s = 1; s < kQuick; ++s) greatest = _mm512_maskz_max_pd(kAll, greatest, a[s].v);
+  for (int s = 1; s < kQuick; ++s) {
+    least = _mm512_maskz_min_pd(kAll, least, a[s].v);
+    greatest = _mm512_maskz_max_pd(kAll, greatest, a[s].v);
+  }
   unsigned outside = _mm512_cmp_pd_mask(least, _mm512_set1_pd(0x1p-900), _CMP_NGE_UQ);
   outside |= _mm512_cmp_pd_mask(greatest, _mm512_set1_pd(0x1p900), _CMP_NLE_UQ);
   const __m512i part = _mm512_set1_epi64((1LL << 52) - 1), first = _mm512_set1_epi64(1);

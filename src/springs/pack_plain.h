@@ -140,6 +140,7 @@ inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
   for (int i = 0; i < 64; ++i) bits |= std::uint64_t{p[i] != 0} << i;
   return bits;
 }
+constexpr bool kQuickRoots = false;
 inline bool QuickSqrt(const Pack[6], Pack[6]) {
   return false;
 }
