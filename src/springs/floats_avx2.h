@@ -13,6 +13,9 @@ inline void StoreFloats(float* p, FloatPack a) {
 inline FloatPack AllFloats(float s) {
   return {_mm256_set1_ps(s)};
 }
+inline FloatPack operator+(FloatPack a, FloatPack b) {
+  return {_mm256_add_ps(a.v, b.v)};
+}
 inline FloatPack operator-(FloatPack a, FloatPack b) {
   return {_mm256_sub_ps(a.v, b.v)};
 }

@@ -103,6 +103,13 @@ struct NearPoints {
   bool Find(const BucketArgs& a, const std::int32_t* members, int count, Reach reach);
 };
 
+/// What is added to the squares of distances to the members from kMost - m on, for member m: it is far from itself.
+struct FarFromItself {
+  float squares[2 * NearPoints::kMost + 2 * kFloatLanes] = {};
+  constexpr FarFromItself() { squares[NearPoints::kMost] = 1e30f; }
+};
+constexpr FarFromItself kFarFromItself;
+
 /// Returns false when a point is near more others than a row can hold.
 inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, int count, Reach reach) {
   alignas(64) float x[3][kMost];  // relative to the first
@@ -132,36 +139,34 @@ inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, i
               SquaredDistance(points, alone(kFloatLanes)));
     if (AtMost(least, reach.push) == 0) return true;
   }
-  int m = kFloatLanes;
-  for (; m < count; m += kFloatLanes) gather(m);
-  std::uint64_t slight[kMost], far[kMost], todo = 0, farTodo = 0, deep = 0;
-  for (m = 0; m < count; ++m) {
-    std::uint64_t slightBits = 0, farBits = 0, deepBits = 0;
-    const auto compare = [&](const auto& squares, int shift) {
-      deepBits |= std::uint64_t{AtMost(squares, reach.deep)} << shift;
-      slightBits |= std::uint64_t{AtMost(squares, reach.slight)} << shift;
-      farBits |= std::uint64_t{AtMost(squares, reach.far)} << shift;
-    };
-    int other = 0;
-    for (; other + kFloatLanes < count; other += kWideLanes) {
-      const WideFloats squares =
-          SquaredLength(AllWide(x[0][m]) - LoadWide(x[0] + other), AllWide(x[1][m]) - LoadWide(x[1] + other),
-                        AllWide(x[2][m]) - LoadWide(x[2] + other));
-      compare(squares, other);
+  for (int m = kFloatLanes; m < count; m += kFloatLanes) gather(m);
+  std::uint64_t near[kMost], todo = 0;
+  for (const float within : {reach.slight, reach.far}) {
+    unsigned deep = 0;
+    todo = 0;
+    for (int m = 0; m < count; ++m) {
+      std::uint64_t bits = 0;
+      const auto compare = [&](const auto& squares, int other) {
+        bits |= std::uint64_t{AtMost(squares, within)} << other;
+        deep |= AtMost(squares, reach.deep);
+      };
+      const float* const itself = kFarFromItself.squares + kMost - m;
+      int other = 0;
+      for (; other + kFloatLanes < count; other += kWideLanes) {
+        const WideFloats squares =
+            SquaredLength(AllWide(x[0][m]) - LoadWide(x[0] + other), AllWide(x[1][m]) - LoadWide(x[1] + other),
+                          AllWide(x[2][m]) - LoadWide(x[2] + other));
+        compare(squares + LoadWide(itself + other), other);
+      }
+      if (other < count) compare(SquaredDistance(alone(m), block(other)) + LoadFloats(itself + other), other);
+      near[m] = bits;
+      todo |= bits;
     }
-    if (other < count) compare(SquaredDistance(alone(m), block(other)), other);
-    const std::uint64_t notItself = ~(std::uint64_t{1} << m);
-    slight[m] = slightBits & notItself;
-    far[m] = farBits & notItself;
-    todo |= slight[m];
-    farTodo |= far[m];
-    deep |= deepBits & notItself;
+    if (deep == 0) break;
   }
-  const std::uint64_t* const near = deep != 0 ? far : slight;
-  if (deep != 0) todo = farTodo;
   int most = 0;
   for (; todo != 0; todo &= todo - 1, ++end) {
-    m = LowestBit(todo);
+    const int m = LowestBit(todo);
     PutMarked(members, count, near[m], members[m], rows[end].others);
     others[end] = BitCount(near[m]);
     most = others[end] > most ? others[end] : most;

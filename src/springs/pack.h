@@ -99,10 +99,10 @@ inline WideFloats AllWide(float s) {
   return AllFloats(s);
 }
 inline void PutMarked(const std::int32_t* from, int, std::uint64_t bits, std::int32_t rest, std::int32_t* to) {
-  for (int i = 0; i < 8; ++i) {
-    to[i] = bits != 0 ? from[LowestBit(bits)] : rest;
-    bits &= bits - 1;
-  }
+  constexpr int kMostly = 3;  // no more are marked
+  for (int i = 0; i < 8; ++i) to[i] = rest;
+  for (int i = 0; i < kMostly; ++i, bits &= bits - 1) to[i] = bits != 0 ? from[LowestBit(bits)] : rest;
+  for (int i = kMostly; i < 8 && bits != 0; ++i, bits &= bits - 1) to[i] = from[LowestBit(bits)];
 }
 #endif
 

@@ -196,6 +196,9 @@ inline WideFloats LoadWide(const float* p) {
 inline WideFloats AllWide(float s) {
   return {_mm512_set1_ps(s)};
 }
+inline WideFloats operator+(WideFloats a, WideFloats b) {
+  return {_mm512_add_ps(a.v, b.v)};
+}
 inline WideFloats operator-(WideFloats a, WideFloats b) {
   return {_mm512_sub_ps(a.v, b.v)};
 }

@@ -161,6 +161,9 @@ inline void StoreFloats(float* p, FloatPack a) {
 inline FloatPack AllFloats(float s) {
   return EachFloat([&](int) { return s; });
 }
+inline FloatPack operator+(FloatPack a, FloatPack b) {
+  return EachFloat([&](int i) { return a.v[i] + b.v[i]; });
+}
 inline FloatPack operator-(FloatPack a, FloatPack b) {
   return EachFloat([&](int i) { return a.v[i] - b.v[i]; });
 }
