@@ -15,7 +15,7 @@
 namespace percale::bench {
 namespace {
 
-constexpr int kFrames = 120;
+constexpr int kContactFrames = 120;
 constexpr const char *kDrape = "drape", *kHanging = "no contact";
 /// Where phases begin, as shares of the frames.
 struct PhaseStart {
@@ -100,7 +100,7 @@ std::string Milliseconds(double seconds) {
 ContactBench MeasureContact(const ContactBenchOptions& options) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int many = options.threads > 0 ? options.threads : cores;
-  const int frames = options.frames > 0 ? std::max(4, options.frames) : kFrames;
+  const int frames = options.frames > 0 ? std::max(4, options.frames) : kContactFrames;
   ContactBench bench;
   for (const int size : options.sizes) {
     for (const bool drape : {true, false}) {

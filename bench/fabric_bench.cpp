@@ -25,7 +25,7 @@ using fabric::FabricModel;
 
 constexpr double kFrame = 1.0 / 60;
 constexpr Vec3 kGravity{0, -9.8, 0};
-constexpr int kFrames = 60;
+constexpr int kCostFrames = 60;
 constexpr int kSizes[] = {32, 64, 100};  // for error against time
 constexpr int kScaleSizes[] = {32, 100, 316, 1000};
 constexpr int kMeasuredFrames = 20;  // the last ones, over whose mean stretch methods are compared
@@ -269,7 +269,7 @@ std::vector<FabricTarget> FabricBench::Targets() const {
 FabricBench MeasureFabric(const FabricBenchOptions& options) {
   FabricBench bench;
   bench.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  const int frames = std::max(options.frames > 0 ? options.frames : kFrames, kMeasuredFrames + 1);
+  const int frames = std::max(options.frames > 0 ? options.frames : kCostFrames, kMeasuredFrames + 1);
   const auto sizes = [&](std::span<const int> standard) {
     return options.sizes.empty() ? std::vector<int>(standard.begin(), standard.end()) : options.sizes;
   };

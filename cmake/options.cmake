@@ -5,6 +5,7 @@ option(PERCALE_BUILD_APPS "Build the program percale (needs the renderer, GLFW, 
 option(PERCALE_BUILD_BENCH "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
 option(PERCALE_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(PERCALE_WERROR "Warnings are errors" OFF)
+option(PERCALE_UNITY "Compile several files as one: half the time for all, more for one changed file" OFF)
 set(PERCALE_SANITIZE "" CACHE STRING "Sanitizers to build with, such as address,undefined")
 option(PERCALE_COVERAGE "Record which lines run" OFF)
 set(PERCALE_PARALLEL "tbb" CACHE STRING "Back end of the parallel loop: tbb, std (plain threads) or serial")
@@ -35,6 +36,13 @@ else()
     # g++ 12 sees overlaps, ends and uninitialised parts in std::string and std::optional that are not there (GCC bugs
     # 105651, 105562); all the more with sanitizers, which find the true ones.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>)
+endif()
+if(PERCALE_UNITY AND NOT WIN32)  # what windows.h defines would reach other files
+  # Files that are compiled with flags of their own, such as kernels, stay alone.
+  set(CMAKE_UNITY_BUILD ON)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+  # Parts of one file that another includes look as if they had to be known elsewhere.
+  target_compile_options(percale_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 if(PERCALE_SANITIZE)
   target_compile_options(percale_flags INTERFACE -fsanitize=${PERCALE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -29,9 +29,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 
 /// A file read front to back, by bytes or by lines.
-class Reader {
+class InfoReader {
  public:
-  Reader(const fs::path& file, std::FILE* stream, std::uint64_t size) : file_(file), stream_(stream), size_(size) {}
+  InfoReader(const fs::path& file, std::FILE* stream, std::uint64_t size) : file_(file), stream_(stream), size_(size) {}
 
   const fs::path& file() const { return file_; }
   std::uint64_t size() const { return size_; }
@@ -190,7 +190,7 @@ bool Include(CacheInfo& info, bool& first, const Vec3& x) {
   return true;
 }
 
-Result<CacheInfo> ReadPc2(Reader& reader) {
+Result<CacheInfo> ReadPc2(InfoReader& reader) {
   std::array<unsigned char, kPointCacheHeadBytes> bytes{};
   if (!reader.Bytes(bytes.data(), bytes.size())) return reader.EndError("a PointCache2 header of 32 bytes");
   const auto head = ParsePointCacheHead(bytes, reader.size(), PathText(reader.file()));
@@ -215,7 +215,7 @@ Result<CacheInfo> ReadPc2(Reader& reader) {
   return info;
 }
 
-Result<CacheInfo> ReadObj(Reader& reader) {
+Result<CacheInfo> ReadObj(InfoReader& reader) {
   CacheInfo info;
   info.format = "Wavefront OBJ";
   info.frames = 1;
@@ -256,7 +256,7 @@ Result<CacheInfo> ReadObj(Reader& reader) {
   return {info, reader.EndWarnings()};
 }
 
-Result<CacheInfo> ReadCsv(Reader& reader) {
+Result<CacheInfo> ReadCsv(InfoReader& reader) {
   constexpr std::string_view kHeader = "frame,cloth,vertex,x,y,z";
   const auto header = reader.Line();
   if (!header) return reader.EndError("the line \"" + std::string(kHeader) + "\"");
@@ -345,7 +345,7 @@ struct PlyElement {
 /// The numbers of a PLY file, in text or binary, one after the other.
 class PlyNumbers {
  public:
-  PlyNumbers(Reader& reader, bool text, bool bigEndian) : reader_(reader), text_(text), bigEndian_(bigEndian) {}
+  PlyNumbers(InfoReader& reader, bool text, bool bigEndian) : reader_(reader), text_(text), bigEndian_(bigEndian) {}
 
   std::optional<double> Next(const PlyType& type) {
     if (text_) {
@@ -367,14 +367,14 @@ class PlyNumbers {
   }
 
  private:
-  Reader& reader_;
+  InfoReader& reader_;
   bool text_, bigEndian_;
   std::vector<std::string_view> words_;
   std::size_t next_ = 0;
 };
 
 /// Reads the header up to "end_header"; `format` is its word after "format".
-Result<std::vector<PlyElement>> ReadPlyHeader(Reader& reader, std::string& format) {
+Result<std::vector<PlyElement>> ReadPlyHeader(InfoReader& reader, std::string& format) {
   std::vector<PlyElement> elements;
   while (const auto line = reader.Line()) {
     const auto words = Words(*line);
@@ -408,7 +408,7 @@ Result<std::vector<PlyElement>> ReadPlyHeader(Reader& reader, std::string& forma
   return reader.EndError("\"end_header\"");
 }
 
-Result<CacheInfo> ReadPly(Reader& reader) {
+Result<CacheInfo> ReadPly(InfoReader& reader) {
   const auto magic = reader.Line();
   if (!magic || *magic != "ply") return reader.Error("expected a PLY file, whose first line is \"ply\"");
   std::string format;
@@ -476,7 +476,7 @@ Result<CacheInfo> ReadCacheInfo(const fs::path& file) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(OpenFile(file, "rb"), &std::fclose);
   if (!stream || code) return MakeError(PathText(file), "cannot be read: " + std::generic_category().message(errno));
 
-  Reader reader(file, stream.get(), size);
+  InfoReader reader(file, stream.get(), size);
   if (const auto kind = CacheKindOf(file)) {
     switch (*kind) {
       case CacheKind::Csv:

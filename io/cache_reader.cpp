@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/index.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "io/cache_kind.h"
@@ -24,10 +25,6 @@ namespace percale {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::size_t Z(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// A mesh as it stands in a file.
 struct ReadMesh {
@@ -79,7 +76,7 @@ Result<ReadMesh> LoadPolygons(const fs::path& file, CacheKind kind) {
                                          ", counted from 0); expected three different ones; remove such triangles");
   }
   std::vector<bool> used(soup.positions.size());
-  for (const std::int32_t v : soup.corners) used[Z(v)] = true;
+  for (const std::int32_t v : soup.corners) used[Index(v)] = true;
   if (const auto loose = std::count(used.begin(), used.end(), false); loose > 0) {
     messages.Add(MakeWarning(PathText(file), std::to_string(loose) + (loose == 1 ? " vertex is" : " vertices are") +
                                                  " of no triangle; the file may have been cut short"));
@@ -144,7 +141,7 @@ struct CacheReader::Impl {
     }
     for (const Triangle& t : mesh.triangles) {
       const auto cloth =
-          Z(static_cast<std::int32_t>(std::upper_bound(begins.begin(), begins.end(), t.a) - begins.begin())) - 1;
+          Index(static_cast<std::int32_t>(std::upper_bound(begins.begin(), begins.end(), t.a) - begins.begin())) - 1;
       cloths[cloth].triangles.push_back({t.a - begins[cloth], t.b - begins[cloth], t.c - begins[cloth]});
     }
   }
@@ -191,7 +188,7 @@ struct CacheReader::Impl {
     auto read = LoadPolygons(beside, CacheKind::Obj);
     if (!read) return read.diagnostics();
     mesh = std::move(*read);
-    if (mesh.positions.size() != Z(parsed->points)) {
+    if (mesh.positions.size() != Index(parsed->points)) {
       return MakeError(name, "expected as many points per frame as " + Quote(PathText(beside.filename())) +
                                  " has vertices, " + std::to_string(mesh.positions.size()) + ", got " +
                                  std::to_string(parsed->points) + "; one of the two files is of another run");
@@ -201,7 +198,7 @@ struct CacheReader::Impl {
   }
 
   Result<int> NextMesh(std::vector<Vec3>& positions) {
-    const NumberedFile& frame = files[Z(next)];
+    const NumberedFile& frame = files[Index(next)];
     if (next++ == 0) {
       positions = mesh.positions;
       return frame.number;

@@ -54,9 +54,9 @@ class Writer {
 };
 
 /// Reads zeros where the bytes are at their end, and remembers that.
-class Reader {
+class CheckpointReader {
  public:
-  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+  explicit CheckpointReader(std::string_view bytes) : rest_(bytes) {}
   template <class T>
   void Number(T& number) {
     number = {};
@@ -85,7 +85,7 @@ class Reader {
   bool good_ = true;
 };
 
-// One description for both directions: `Stream` is a Writer or a Reader.
+// One description for both directions: `Stream` is a Writer or a CheckpointReader.
 template <class Stream, class V>
 void Exchange(Stream& stream, V& v) requires std::is_same_v<std::remove_const_t<V>, Vec3> {
   stream.Number(v.x);
@@ -273,7 +273,7 @@ Result<WorldState> ParseCheckpoint(std::string_view all, const std::string& name
     return MakeError(name, all.empty() ? "expected a checkpoint of Percale, got an empty file"
                                        : "expected a checkpoint of Percale, got something else");
   }
-  Reader head(all.substr(kMark.size(), kHeader - kMark.size()));
+  CheckpointReader head(all.substr(kMark.size(), kHeader - kMark.size()));
   std::uint32_t version = 0;
   std::uint64_t size = 0, checksum = 0;
   head.Number(version);
@@ -288,12 +288,12 @@ Result<WorldState> ParseCheckpoint(std::string_view all, const std::string& name
                                                                    : std::string("more")));
   }
   const std::string_view body = all.substr(kHeader, size);
-  Reader tail(all.substr(kHeader + size));
+  CheckpointReader tail(all.substr(kHeader + size));
   tail.Number(checksum);
   if (!tail.AtEnd() || checksum != Checksum(body)) {
     return MakeError(name, "the checkpoint has been changed or damaged: its checksum does not fit");
   }
-  Reader reader(body);
+  CheckpointReader reader(body);
   std::string text;
   reader.Text(text);
   Result<Scene> scene = ParseScene(text, name + " (its scene)");

@@ -12,11 +12,11 @@
 namespace percale {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{64} << 20;  // [byte]
+constexpr std::size_t kLargestDocument = std::size_t{64} << 20;  // [byte]
 constexpr std::size_t kDeepest = 32;
 constexpr std::size_t kMostValues = 10'000'000;  // 32 bytes each
 constexpr std::size_t kMostMessages = 1000;
-constexpr std::size_t kBlock = 4096;  // of the character count [byte]
+constexpr std::size_t kCountBlock = 4096;  // of the character count [byte]
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 bool IsSpace(char c) {
@@ -24,9 +24,6 @@ bool IsSpace(char c) {
 }
 bool IsContinuation(char c) {
   return (static_cast<unsigned char>(c) & 0xc0) == 0x80;
-}
-bool IsDigit(char c) {
-  return c >= '0' && c <= '9';
 }
 bool IsLetter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -79,8 +76,8 @@ Place JsonDocument::At(std::size_t offset) const {
   const auto after = std::upper_bound(lineBegins_.begin(), lineBegins_.end(), offset);
   const std::size_t line = static_cast<std::size_t>(after - lineBegins_.begin());
   const auto charactersBefore = [&](std::size_t end) {
-    const std::size_t block = end / kBlock;
-    const auto begin = text_.begin() + static_cast<std::ptrdiff_t>(block * kBlock);
+    const std::size_t block = end / kCountBlock;
+    const auto begin = text_.begin() + static_cast<std::ptrdiff_t>(block * kCountBlock);
     const auto rest = std::count_if(begin, text_.begin() + static_cast<std::ptrdiff_t>(end),
                                     [](char c) { return !IsContinuation(c); });
     return characters_[block] + static_cast<std::uint32_t>(rest);
@@ -94,11 +91,11 @@ void JsonDocument::IndexLines() {
   lineBegins_.push_back(text_.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0 ? 3 : 0);
   std::uint32_t characters = 0;
   for (std::size_t i = 0; i < text_.size(); ++i) {
-    if (i % kBlock == 0) characters_.push_back(characters);
+    if (i % kCountBlock == 0) characters_.push_back(characters);
     if (!IsContinuation(text_[i])) ++characters;
     if (text_[i] == '\n') lineBegins_.push_back(static_cast<std::uint32_t>(i + 1));
   }
-  if (text_.size() % kBlock == 0) characters_.push_back(characters);
+  if (text_.size() % kCountBlock == 0) characters_.push_back(characters);
 }
 
 Diagnostic JsonDocument::Message(std::size_t offset, Severity severity, std::string message) const {
@@ -545,7 +542,7 @@ Result<JsonDocument> JsonDocument::Parse(std::string text, std::string file) {
   JsonDocument document;
   document.file_ = std::move(file);
   document.text_ = std::move(text);
-  if (document.text_.size() > kLargestFile) {
+  if (document.text_.size() > kLargestDocument) {
     return MakeError(document.file_,
                      "expected a scene of at most 64 MB, got " + std::to_string(document.text_.size() >> 20) + " MB");
   }
@@ -591,12 +588,12 @@ Result<JsonDocument> JsonDocument::Load(const std::filesystem::path& file) {
   }
   std::string text;
   std::vector<char> buffer(1 << 16);
-  while (in && text.size() <= kLargestFile) {
+  while (in && text.size() <= kLargestDocument) {
     in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
     text.append(buffer.data(), static_cast<std::size_t>(in.gcount()));
   }
   if (in.bad()) return MakeError(name, "reading the file failed after " + std::to_string(text.size()) + " bytes");
-  if (text.size() > kLargestFile) return MakeError(name, "expected a scene of at most 64 MB, this file is larger");
+  if (text.size() > kLargestDocument) return MakeError(name, "expected a scene of at most 64 MB, this file is larger");
   return Parse(std::move(text), name);
 }
 

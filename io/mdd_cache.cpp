@@ -13,22 +13,22 @@ constexpr double kUneven = 0.05;
 /// The same of what a float loses of a late time.
 constexpr double kFloatRounding = 1.2e-7;
 
-std::uint32_t Number(const unsigned char* bytes) {
+std::uint32_t BigEndianNumber(const unsigned char* bytes) {
   std::uint32_t number = 0;
   for (int i = 0; i < 4; ++i) number = number << 8 | bytes[i];
   return number;
 }
 
-double Float(const unsigned char* bytes) {
-  return double(std::bit_cast<float>(Number(bytes)));
+double BigEndianFloat(const unsigned char* bytes) {
+  return double(std::bit_cast<float>(BigEndianNumber(bytes)));
 }
 
 }  // namespace
 
 Result<MddHead> ParseMddHead(const std::array<unsigned char, kMddHeadBytes>& bytes, std::uint64_t size,
                              const std::string& name) {
-  const auto frames = static_cast<std::int32_t>(Number(&bytes[0])),
-             points = static_cast<std::int32_t>(Number(&bytes[4]));
+  const auto frames = static_cast<std::int32_t>(BigEndianNumber(&bytes[0])),
+             points = static_cast<std::int32_t>(BigEndianNumber(&bytes[4]));
   if (frames < 0) return MakeError(name, "expected a number of frames >= 0, got " + std::to_string(frames));
   if (points < 0) return MakeError(name, "expected a number of points >= 0, got " + std::to_string(points));
   // By division: the product of two lies may overflow.
@@ -43,7 +43,7 @@ Result<MddHead> ParseMddHead(const std::array<unsigned char, kMddHeadBytes>& byt
 
 Result<double> ParseMddSpacing(std::span<const unsigned char> times, const std::string& name) {
   const std::size_t count = times.size() / kMddTimeBytes;
-  const auto at = [&](std::size_t i) { return Float(&times[kMddTimeBytes * i]); };
+  const auto at = [&](std::size_t i) { return BigEndianFloat(&times[kMddTimeBytes * i]); };
   const auto sampleTime = [](std::size_t i) { return "the time of sample " + std::to_string(i) + ": expected "; };
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isfinite(at(i)))
@@ -67,7 +67,7 @@ Result<double> ParseMddSpacing(std::span<const unsigned char> times, const std::
 }
 
 Vec3 MddPoint(const unsigned char* bytes) {
-  return {Float(bytes), Float(bytes + 4), Float(bytes + 8)};
+  return {BigEndianFloat(bytes), BigEndianFloat(bytes + 4), BigEndianFloat(bytes + 8)};
 }
 
 }  // namespace percale

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 
+#include "core/index.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
 #include "io/mesh_source.h"
@@ -18,10 +19,6 @@ namespace percale {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::size_t Z(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string Count(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
@@ -100,7 +97,7 @@ Triangles CutPolygons(const PolygonSoup& soup, const MeshSource& source, MeshMes
     }
     const std::size_t n = ring.size();
     x.clear();
-    for (const std::size_t c : ring) x.push_back(soup.positions[Z(soup.corners[c])]);
+    for (const std::size_t c : ring) x.push_back(soup.positions[Index(soup.corners[c])]);
     const auto start = FanStart(x);
     if (!start && folded++ == 0) firstFolded = p;
     for (std::size_t i = 1; i + 1 < n; ++i) {
@@ -111,7 +108,7 @@ Triangles CutPolygons(const PolygonSoup& soup, const MeshSource& source, MeshMes
       if (!hasUv) continue;
       for (const std::size_t corner : corners) {
         const std::int32_t t = soup.cornerTexture[corner];
-        out.cornerUv.push_back(t >= 0 ? soup.texture[Z(t)] : Vec2{kMissing, kMissing});
+        out.cornerUv.push_back(t >= 0 ? soup.texture[Index(t)] : Vec2{kMissing, kMissing});
       }
     }
   }
@@ -135,15 +132,15 @@ std::vector<std::int32_t> FindWelds(std::span<const Vec3> positions, double dist
   if (distance == 0) {
     std::vector<std::int32_t> sorted = kept;
     const auto before = [&](std::int32_t i, std::int32_t j) {
-      const Vec3 &a = positions[Z(i)], &b = positions[Z(j)];
+      const Vec3 &a = positions[Index(i)], &b = positions[Index(j)];
       if (a.x != b.x) return a.x < b.x;
       if (a.y != b.y) return a.y < b.y;
       return a.z != b.z ? a.z < b.z : i < j;
     };
     std::sort(sorted.begin(), sorted.end(), before);
     for (std::size_t i = 1; i < sorted.size(); ++i) {
-      const std::int32_t lower = kept[Z(sorted[i - 1])];
-      if (positions[Z(lower)] == positions[Z(sorted[i])]) kept[Z(sorted[i])] = lower;
+      const std::int32_t lower = kept[Index(sorted[i - 1])];
+      if (positions[Index(lower)] == positions[Index(sorted[i])]) kept[Index(sorted[i])] = lower;
     }
     return kept;
   }
@@ -168,8 +165,8 @@ std::vector<std::int32_t> FindWelds(std::span<const Vec3> positions, double dist
         const Cell first{own[0] + dx, own[1] + dy, own[2] - 1}, last{own[0] + dx, own[1] + dy, own[2] + 1};
         for (auto cell = std::lower_bound(cells.begin(), cells.end(), first); cell != cells.end() && *cell <= last;
              ++cell) {
-          for (std::int32_t o = head[static_cast<std::size_t>(cell - cells.begin())]; o >= 0; o = next[Z(o)]) {
-            const bool near = Length(positions[Z(o)] - positions[v]) <= distance;
+          for (std::int32_t o = head[static_cast<std::size_t>(cell - cells.begin())]; o >= 0; o = next[Index(o)]) {
+            const bool near = Length(positions[Index(o)] - positions[v]) <= distance;
             if (near && (found < 0 || o < found)) found = o;
           }
         }
@@ -191,7 +188,7 @@ void Weld(std::span<const std::int32_t> kept, Triangles& mesh, std::size_t& drop
   std::size_t next = 0;
   dropped = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle old = mesh.triangles[i], t{kept[Z(old.a)], kept[Z(old.b)], kept[Z(old.c)]};
+    const Triangle old = mesh.triangles[i], t{kept[Index(old.a)], kept[Index(old.b)], kept[Index(old.c)]};
     const bool wasWhole = old.a != old.b && old.b != old.c && old.c != old.a;
     if (wasWhole && (t.a == t.b || t.b == t.c || t.c == t.a)) {
       if (dropped++ == 0) firstDropped = mesh.polygon[i];
@@ -216,7 +213,7 @@ std::vector<VertexGroup> VertexGroups(const PolygonSoup& soup, std::span<const s
     VertexGroup out{group.name, {}};
     for (const auto& [first, end] : group.polygons) {
       for (std::size_t c = soup.PolygonBegin(first); c < soup.polygonEnds[end - 1]; ++c)
-        out.vertices.push_back(kept[Z(soup.corners[c])]);
+        out.vertices.push_back(kept[Index(soup.corners[c])]);
     }
     std::sort(out.vertices.begin(), out.vertices.end());
     out.vertices.erase(std::unique(out.vertices.begin(), out.vertices.end()), out.vertices.end());
@@ -233,9 +230,9 @@ std::vector<Vec2> VertexUv(std::size_t vertexCount, const Triangles& mesh) {
     const std::int32_t corners[3] = {mesh.triangles[t].a, mesh.triangles[t].b, mesh.triangles[t].c};
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2& here = mesh.cornerUv[3 * t + k];
-      if (has[Z(corners[k])] || std::isnan(here.x)) continue;
-      uv[Z(corners[k])] = here;
-      has[Z(corners[k])] = true;
+      if (has[Index(corners[k])] || std::isnan(here.x)) continue;
+      uv[Index(corners[k])] = here;
+      has[Index(corners[k])] = true;
     }
   }
   return uv;
@@ -329,9 +326,9 @@ class Importer {
     double flat = 0, worn = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       const Triangle& t = triangles[i];
-      const Vec3& a = mesh.positions[Z(t.a)];
+      const Vec3& a = mesh.positions[Index(t.a)];
       flat += MaterialArea(mesh.material, i);
-      worn += Length(Cross(mesh.positions[Z(t.b)] - a, mesh.positions[Z(t.c)] - a)) / 2;
+      worn += Length(Cross(mesh.positions[Index(t.b)] - a, mesh.positions[Index(t.c)] - a)) / 2;
     }
     if (!(flat > 0) || !(worn > 0) || (flat < kFarApart * worn && worn < kFarApart * flat)) return;
     const auto rounded = [](double x) { return FormatNumber(RoundDown(x, 3)); };
@@ -348,13 +345,13 @@ class Importer {
     // Those that were welded to others are no surprise.
     std::vector<std::int32_t> lone;
     for (const std::int32_t v : problems.unreferenced) {
-      if (kept[Z(v)] == v) lone.push_back(v);
+      if (kept[Index(v)] == v) lone.push_back(v);
     }
     std::vector<std::int32_t> unreferenced = std::move(problems.unreferenced);
     problems.unreferenced = std::move(lone);
     for (const MeshProblem& problem : DescribeMeshProblems(problems)) {
       if (problem.triangle >= 0)
-        About(cut.polygon[Z(problem.triangle)], problem.severity, problem.message);
+        About(cut.polygon[Index(problem.triangle)], problem.severity, problem.message);
       else
         messages_.Add({problem.severity, {source_.file(), 0, 0}, problem.message, {}, 0});
     }

@@ -18,11 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kLargestFile = std::uint64_t{4} << 30;  // [byte]
+constexpr std::uint64_t kLargestMesh = std::uint64_t{4} << 30;  // [byte]
 
-bool IsDigit(char c) {
-  return c >= '0' && c <= '9';
-}
 bool IsLineBreak(char c) {
   return c == '\n' || c == '\r';
 }
@@ -71,7 +68,7 @@ Result<MeshSource> MeshSource::Load(const fs::path& file) {
     return MakeError(source.file_,
                      "cannot be read: " + std::generic_category().message(errno) + "; check its permissions");
   }
-  if (size > kLargestFile) {
+  if (size > kLargestMesh) {
     return MakeError(source.file_, "expected a mesh of at most 4 GB, got " + std::to_string(size >> 30) + " GB");
   }
   if (size == 0) return MakeError(source.file_, "the file is empty; expected a mesh");

@@ -15,7 +15,7 @@ std::uint32_t Number(const unsigned char* bytes) {
   return number;
 }
 
-double Float(const unsigned char* bytes) {
+double LittleEndianFloat(const unsigned char* bytes) {
   return double(std::bit_cast<float>(Number(bytes)));
 }
 
@@ -28,7 +28,7 @@ Result<PointCacheHead> ParsePointCacheHead(const std::array<unsigned char, kPoin
   }
   const auto int32 = [&](std::size_t at) { return static_cast<std::int32_t>(Number(&bytes[at])); };
   const std::int32_t version = int32(12), points = int32(16), frames = int32(28);
-  const double frameSeconds = Float(&bytes[24]);
+  const double frameSeconds = LittleEndianFloat(&bytes[24]);
   if (version != 1) return MakeError(name, "expected PointCache2 of version 1, got version " + std::to_string(version));
   if (points < 0) return MakeError(name, "expected a number of points >= 0, got " + std::to_string(points));
   if (frames < 0) return MakeError(name, "expected a number of frames >= 0, got " + std::to_string(frames));
@@ -50,7 +50,7 @@ Result<PointCacheHead> ParsePointCacheHead(const std::array<unsigned char, kPoin
 }
 
 Vec3 PointCachePoint(const unsigned char* bytes) {
-  return {Float(bytes), Float(bytes + 4), Float(bytes + 8)};
+  return {LittleEndianFloat(bytes), LittleEndianFloat(bytes + 4), LittleEndianFloat(bytes + 8)};
 }
 
 }  // namespace percale

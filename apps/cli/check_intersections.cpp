@@ -23,7 +23,7 @@ std::string Count(std::int64_t count, const char* what) {
 }
 
 /// What one file adds up to.
-struct Verdict {
+struct IntersectionVerdict {
   int frames = 0;
   std::int64_t intersections = 0;
 
@@ -55,7 +55,7 @@ int JudgeCache(const std::filesystem::path& file, int threads) {
   for (const CacheReader::Cloth& cloth : reader->cloths()) cloths.push_back({cloth.vertices, cloth.triangles});
   ClothJudge judge(cloths, threads);
   std::vector<Vec3> positions;
-  Verdict verdict;
+  IntersectionVerdict verdict;
   while (verdict.frames < reader->frames()) {
     if (Interrupted()) {
       verdict.Print(PathText(file));
@@ -79,7 +79,7 @@ int JudgeScene(const Options& options) {
   if (const int* failure = std::get_if<int>(&opened)) return *failure;
   const Session& session = std::get<Session>(opened);
   const World world = MakeWorld(options, session);
-  Verdict verdict;
+  IntersectionVerdict verdict;
   verdict.Add(world.report().frame, ClothJudge(world, options.threads).Count(world, 1));
   return verdict.Print(PathText(session.file));
 }

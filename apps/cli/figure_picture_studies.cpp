@@ -98,8 +98,8 @@ double PictureChange(const Image& a, const Image& b, const Scene& scene, const O
 
 }  // namespace
 
-Result<Table> StudySphere(Painter& painter, const fs::path& heightMap, const Scene& scene, View view, int width,
-                          int height) {
+Result<Table> StudySphere(Painter& painter, const fs::path& heightMap, const Scene& scene, percale::View view,
+                          int width, int height) {
   const auto image = ReadPng(heightMap);
   if (!image) return image.diagnostics();
   const HeightMap map(*image);

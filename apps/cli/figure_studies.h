@@ -44,8 +44,8 @@ int RatioStudyFrames();
 /// `displaced_max` and `smooth_rms`, the distances of the drawn from the exact surface [m];
 /// `bump_change` and `displacement_change`, the mean difference per pixel of the picture from one of
 /// a sphere too fine to tell, of 255. The camera is that of `view`.
-Result<Table> StudySphere(Painter& painter, const std::filesystem::path& heightMap, const Scene& scene, View view,
-                          int width, int height);
+Result<Table> StudySphere(Painter& painter, const std::filesystem::path& heightMap, const Scene& scene,
+                          percale::View view, int width, int height);
 
 /// What figures 31 to 34 add up to: `difference`, the greatest per channel between the sum of the
 /// first three and the fourth on the cloth, of 255; `ambient_colors`, how many colours the first one shows.

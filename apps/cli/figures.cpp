@@ -132,7 +132,7 @@ class Gallery {
   int PrepareFigure(const Figure& figure, const std::string& assets);
   std::vector<Work> MissingWorks();
   int Take(const FinishedWork& work);
-  int Draw(Drawing& drawing, const Shape& shape);
+  int Draw(Drawing& drawing, const ClothShapes& shape);
   int StudyPictures();
   ShownFigure Show(const Drawing& drawing) const;
   void PrintSummary(const FigurePage& page) const;
@@ -276,7 +276,7 @@ std::vector<Work> Gallery::MissingWorks() {
   return works;
 }
 
-int Gallery::Draw(Drawing& drawing, const Shape& shape) {
+int Gallery::Draw(Drawing& drawing, const ClothShapes& shape) {
   const World world(scenes_.at(drawing.figure->course()), {.threads = 1});  // for what is not its shape
   std::vector<ClothShape> cloths;
   for (int c = 0; c < world.ClothCount(); ++c) {

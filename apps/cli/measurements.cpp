@@ -7,6 +7,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "core/index.h"
 #include "core/text.h"
 #include "io/atomic_file.h"
 
@@ -14,10 +15,6 @@ namespace percale::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Mean angle between the normals of neighbouring squares of the grid [degree].
 double Folding(std::span<const Vec3> x, int numWidth, int numHeight) {
@@ -125,8 +122,8 @@ std::optional<Table> ReadTable(const fs::path& file, const std::string& key) {
   return std::nullopt;  // the end is missing
 }
 
-Shape ShapeOf(const World& world) {
-  Shape shape;
+ClothShapes ShapeOf(const World& world) {
+  ClothShapes shape;
   for (int c = 0; c < world.ClothCount(); ++c) {
     const auto positions = world.Cloth(c).positions();
     shape.emplace_back(positions.begin(), positions.end());

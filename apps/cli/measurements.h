@@ -32,9 +32,9 @@ Status WriteTable(const std::filesystem::path& file, const std::string& key, con
 std::optional<Table> ReadTable(const std::filesystem::path& file, const std::string& key);
 
 /// Positions, cloth by cloth.
-using Shape = std::vector<std::vector<Vec3>>;
+using ClothShapes = std::vector<std::vector<Vec3>>;
 /// A copy of where all points are now [m].
-Shape ShapeOf(const World& world);
+ClothShapes ShapeOf(const World& world);
 
 /// How a simulation went: a row for the start and for each frame, with the columns `time` [s],
 /// `lowest_y`, `highest_y`, `mean_y` [m], `stretch` (greatest length over rest length),
@@ -42,7 +42,7 @@ Shape ShapeOf(const World& world);
 /// `folding` (mean angle between neighbouring squares of the first cloth [degree]).
 struct Course {
   Table table;
-  std::map<int, Shape> shapes;           ///< Of the frames that were asked for.
+  std::map<int, ClothShapes> shapes;     ///< Of the frames that were asked for.
   std::optional<Divergence> divergence;  ///< Set: the course ends with the last good frame.
 };
 

@@ -24,9 +24,9 @@ constexpr int kPngLevel = 6;
 
 }  // namespace
 
-View MakeView(const Options& options, const Scene& scene, const std::optional<percale::View>& picture) {
-  const View plain = View::ForScene(SeenScene(options, scene));
-  View view = picture.value_or(plain);
+percale::View MakeView(const Options& options, const Scene& scene, const std::optional<percale::View>& picture) {
+  const percale::View plain = percale::View::ForScene(SeenScene(options, scene));
+  percale::View view = picture.value_or(plain);
   view.look = plain.look;
   view.camera = plain.camera;
   if (options.latitudes) view.sphereLatitudes = *options.latitudes;
@@ -38,7 +38,7 @@ View MakeView(const Options& options, const Scene& scene, const std::optional<pe
   return view;
 }
 
-int ApplyUniforms(const Options& options, std::span<const ShaderParameter> parameters, View& view) {
+int ApplyUniforms(const Options& options, std::span<const ShaderParameter> parameters, percale::View& view) {
   std::vector<std::string_view> names;
   for (const ShaderParameter& parameter : parameters) names.push_back(parameter.name);
   for (const UniformOption& uniform : options.uniforms) {
@@ -90,7 +90,7 @@ std::variant<Studio, int> OpenStudio(const Options& options, const Session& sess
     PrintDiagnostics(root.diagnostics());
     return kFailed;
   }
-  View view = MakeView(options, session.scene, session.view);
+  percale::View view = MakeView(options, session.scene, session.view);
   const std::vector<std::string> shaders = ListShaders(*root / "shaders");
   if (std::find(shaders.begin(), shaders.end(), view.look.shader) == shaders.end()) {
     const std::vector<std::string_view> names(shaders.begin(), shaders.end());
@@ -129,8 +129,8 @@ std::optional<Image> Paint(Studio& studio, const World& world) {
   return std::move(*image);
 }
 
-Status SavePicture(const fs::path& file, const Image& image, const fs::path& root, const Scene& scene, const View& view,
-                   int frame, std::vector<PngText> more, const WorldState* state) {
+Status SavePicture(const fs::path& file, const Image& image, const fs::path& root, const Scene& scene,
+                   const percale::View& view, int frame, std::vector<PngText> more, const WorldState* state) {
   PngOptions png;
   png.level = kPngLevel;
   png.text = DescribePicture(scene, view, frame, state, root);

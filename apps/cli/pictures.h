@@ -17,11 +17,11 @@
 namespace percale::cli {
 
 /// The view of the scene, or of the picture that was opened, with the command line's choices.
-View MakeView(const Options& options, const Scene& scene, const std::optional<percale::View>& picture = {});
+percale::View MakeView(const Options& options, const Scene& scene, const std::optional<percale::View>& picture = {});
 
 /// Enters the command line's --uniform into the view, if they fit the parameters of its shader. Returns
 /// the exit code.
-int ApplyUniforms(const Options& options, std::span<const ShaderParameter> parameters, View& view);
+int ApplyUniforms(const Options& options, std::span<const ShaderParameter> parameters, percale::View& view);
 
 /// Enters what the viewer has kept of the shader's parameters, unless a picture has brought its own. Returns
 /// what is wrong with the file.
@@ -31,7 +31,7 @@ Diagnostics ApplyKeptUniforms(const Options& options, const Session& session, co
 /// A painter and its view.
 struct Studio {
   Painter painter;
-  View view;
+  percale::View view;
   std::filesystem::path root;  ///< The project's folder.
 };
 
@@ -46,7 +46,7 @@ std::optional<Image> Paint(Studio& studio, const World& world);
 /// Writes a PNG file that tells what it shows, from the project's folder `root` (render/view_file.h), `more` behind
 /// that.
 Status SavePicture(const std::filesystem::path& file, const Image& image, const std::filesystem::path& root,
-                   const Scene& scene, const View& view, int frame, std::vector<PngText> more = {},
+                   const Scene& scene, const percale::View& view, int frame, std::vector<PngText> more = {},
                    const WorldState* state = nullptr);
 
 /// Paints the World and writes such a file. Returns the exit code.

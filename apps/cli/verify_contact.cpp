@@ -12,8 +12,6 @@
 namespace percale::cli {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s²
-
 /// Cotton that keeps no energy to itself.
 ClothSettings Cotton(double width, double height, int columns, int rows) {
   return PlainSheet(width, height, columns, rows, 0.15, 261, 0.243, 4e-5);

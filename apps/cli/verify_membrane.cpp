@@ -14,8 +14,6 @@
 namespace percale::cli {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s²
-
 /// The deformation gradient of a triangle: how the material directions u and v are drawn into space.
 struct Gradient {
   Vec3 u, v;

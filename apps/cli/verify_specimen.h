@@ -16,6 +16,8 @@
 
 namespace percale::cli {
 
+inline constexpr double kGravity = 9.81;  ///< [m/s^2]
+
 /// So many steps of one second, each solved to rounding, in empty space.
 Scene EmptyScene(int stepsPerSecond = 1);
 

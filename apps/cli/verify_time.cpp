@@ -12,8 +12,6 @@
 namespace percale::cli {
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s²
-
 /// A metre of cotton, free.
 ClothSettings Cotton(int elements) {
   ClothSettings cloth = PlainSheet(1, 1, elements, elements, 0.15, 261, 0.243, 4e-5);

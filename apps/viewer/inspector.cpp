@@ -10,6 +10,7 @@
 #include "apps/viewer/session.h"
 #include "apps/viewer/ui_state.h"
 #include "apps/viewer/widgets.h"
+#include "core/index.h"
 #include "core/text.h"
 #include "mesh/cloth_model.h"
 #include "mesh/pick.h"
@@ -20,10 +21,6 @@ namespace {
 
 constexpr float kOffset = 18;                             // of the window from the vertex [screen unit at scale 1]
 constexpr ImU32 kRingColor = IM_COL32(230, 159, 0, 255);  // orange of Okabe and Ito
-
-std::size_t Index(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The cloths' vertex nearest to where the pointer's ray meets them first.
 std::optional<VertexRef> PickVertex(const Session& session, double x, double y, int width, int height) {

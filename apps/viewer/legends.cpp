@@ -12,7 +12,7 @@
 namespace percale::viewer {
 namespace {
 
-constexpr float kTop = 64, kLeft = 10, kWidth = 240, kBarHeight = 14;  // [screen unit at scale 1]
+constexpr float kTop = 64, kLeft = 10, kLegendWidth = 240, kBarHeight = 14;  // [screen unit at scale 1]
 constexpr int kTicks = 5, kParts = 64;
 constexpr ImU32 kGround = IM_COL32(20, 20, 20, 170);
 
@@ -28,7 +28,7 @@ float DrawHeatLegend(const UiState& state) {
   const float scale = state.scale, text = ImGui::GetTextLineHeight(), pad = 8 * scale;
   const float left = kLeft * scale, top = kTop * scale;
   const ImVec2 bar{left + 2 * pad, top + text + pad};
-  const float width = kWidth * scale, height = kBarHeight * scale;
+  const float width = kLegendWidth * scale, height = kBarHeight * scale;
   const float bottom = bar.y + height + text + pad;
   list.AddRectFilled({left, top}, {bar.x + width + 2 * pad, bottom}, kGround, 3 * scale);
   const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);

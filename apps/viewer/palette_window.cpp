@@ -16,8 +16,8 @@
 namespace percale::viewer {
 namespace {
 
-constexpr float kWidth = 560;     // [screen unit at scale 1]
-constexpr float kHighest = 0.7f;  // Of the window.
+constexpr float kPaletteWidth = 560;  // [screen unit at scale 1]
+constexpr float kHighest = 0.7f;      // Of the window.
 constexpr int kMostRows = 14;
 constexpr int kAskEvery = 4;  // Pictures: the box takes the keyboard a picture or two after it was asked to.
 
@@ -80,7 +80,7 @@ void Log(Session& session, UiState& state, const std::vector<Match>& matches) {
 void DrawPalette(Session& session, UiState& state, float windowWidth, float height) {
   Palette& palette = state.palette;
   if (!palette.open) return;
-  const float width = std::min(kWidth * state.scale, windowWidth - 8 * state.scale);
+  const float width = std::min(kPaletteWidth * state.scale, windowWidth - 8 * state.scale);
   ImGui::SetNextWindowPos({windowWidth / 2, height * 0.12f}, ImGuiCond_Always, {0.5f, 0});
   ImGui::SetNextWindowSize({width, 0});
   if (palette.focus) ImGui::SetNextWindowFocus();

@@ -18,7 +18,7 @@
 namespace percale::viewer {
 namespace {
 
-constexpr float kWidth = 430, kHeight = 620, kMargin = 10;  // [screen unit at scale 1]
+constexpr float kPlotsWidth = 430, kPlotsHeight = 620, kMargin = 10;  // [screen unit at scale 1]
 constexpr float kSmallestPlot = 70;
 constexpr int kPlots = 4;
 
@@ -80,9 +80,9 @@ void DrawPlotsWindow(Session& session, UiState& state, float pictureWidth, float
   if (!state.plotsVisible) return;
   MeasureNewest(session, state.plotRatios);
   const float margin = kMargin * state.scale;
-  ImGui::SetNextWindowSize(
-      {std::min(kWidth * state.scale, pictureWidth - 2 * margin), std::min(kHeight * state.scale, height - 8 * margin)},
-      ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize({std::min(kPlotsWidth * state.scale, pictureWidth - 2 * margin),
+                            std::min(kPlotsHeight * state.scale, height - 8 * margin)},
+                           ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowPos({margin, height - margin}, ImGuiCond_FirstUseEver, {0, 1});
   const bool shown = ImGui::Begin("Plots", &state.plotsVisible, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoNav);
   if (shown) {

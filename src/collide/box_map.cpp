@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/index.h"
+
 namespace percale {
 
 namespace {
@@ -15,10 +17,6 @@ constexpr std::int32_t Room(std::int32_t members) {
 }
 constexpr int kMostRoom = 16;  // no bucket has more room than this times its members ...
 constexpr int kAllRoom = 18;   // ... and so there is room for 2 per point where outgrown buckets go
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

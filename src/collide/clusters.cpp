@@ -9,16 +9,13 @@
 #include <utility>
 
 #include "collide/contact_mesh.h"
+#include "core/index.h"
 
 namespace percale {
 namespace {
 
 constexpr std::size_t kLeafItems = Clusters::kLeafItems;
 constexpr std::size_t kSmallestGroup = 4;  // of items that are sorted by place within a leaf
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The corners of a triangle, the ends of an edge or a vertex; the rest is -1.
 struct Item {

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "core/index.h"
 #include "percale/vec3.h"
 
 namespace percale {
@@ -18,10 +19,6 @@ namespace {
 
 constexpr double kInside = 1e-8;     // of a region's size: what reaches into its hull by less than that is outside
 constexpr double kAreaError = 1e-6;  // of a hull's area
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 double Cross(const Vec2& a, const Vec2& b) {
   return a.x * b.y - a.y * b.x;

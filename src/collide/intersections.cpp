@@ -10,13 +10,10 @@
 #include <utility>
 
 #include "collide/predicates.h"
+#include "core/index.h"
 
 namespace percale {
 namespace {
-
-std::size_t Z(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 // On sheets of 10,000 vertices, flat and wavy, 4 to 12 took the same time.
 constexpr std::size_t kLeafTriangles = 8;
@@ -48,17 +45,17 @@ struct Bounds {
 };
 
 /// Bounds in half of the memory, rounded outwards: where bounds meet, so do these.
-struct Box {
+struct TreeBox {
   static constexpr float kFar = std::numeric_limits<float>::infinity();
   float low[3]{kFar, kFar, kFar}, high[3]{-kFar, -kFar, -kFar};
 
-  void Add(const Box& o) {
+  void Add(const TreeBox& o) {
     for (int k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], o.low[k]);
       high[k] = std::max(high[k], o.high[k]);
     }
   }
-  bool Meets(const Box& o) const {
+  bool Meets(const TreeBox& o) const {
     return (low[0] <= o.high[0]) & (o.low[0] <= high[0]) & (low[1] <= o.high[1]) & (o.low[1] <= high[1]) &
            (low[2] <= o.high[2]) & (o.low[2] <= high[2]);
   }
@@ -74,9 +71,9 @@ constexpr double kLargest = 1e38;
 float Float(double a) {
   return static_cast<float>(std::clamp(a, -kLargest, kLargest));
 }
-Box Round(const Bounds& b) {
+TreeBox Round(const Bounds& b) {
   const double low[3] = {b.low.x, b.low.y, b.low.z}, high[3] = {b.high.x, b.high.y, b.high.z};
-  Box box;
+  TreeBox box;
   for (int k = 0; k < 3; ++k) {
     box.low[k] = Float(low[k] - (std::abs(low[k]) * kFloatError + kLeastError));
     box.high[k] = Float(high[k] + (std::abs(high[k]) * kFloatError + kLeastError));
@@ -84,17 +81,17 @@ Box Round(const Bounds& b) {
   return box;
 }
 
-using Corners = std::array<std::int32_t, 3>;
+using Corners3 = std::array<std::int32_t, 3>;
 
 /// A triangle on its way into a leaf of the tree.
 struct Placed {
-  Box box;
+  TreeBox box;
   std::int32_t triangle;
 };
 
 /// A part of the tree. What it consists of follows it; `next` comes behind all that.
 struct Node {
-  Box box;
+  TreeBox box;
   std::uint32_t next = 0;
   std::uint32_t firstLeaf = 0, endLeaf = 0;
   bool obstaclesOnly = false;
@@ -129,7 +126,7 @@ struct Found {
 struct IntersectionJudge::Impl {
   struct OwnEdge {
     std::int32_t a, b;  // a < b
-    Box box;
+    TreeBox box;
   };
 
   int vertices, obstacles;
@@ -150,9 +147,9 @@ struct IntersectionJudge::Impl {
     std::vector<Side> sides;
     sides.reserve(3 * triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const Corners c = CornersOf(t);
+      const Corners3 c = CornersOf(t);
       for (std::int32_t k = 0; k < 3; ++k) {
-        const std::int32_t from = c[Z(k)], to = c[Z((k + 1) % 3)];
+        const std::int32_t from = c[Index(k)], to = c[Index((k + 1) % 3)];
         assert(from >= 0 && from < vertexCount && from != to);
         sides.push_back({std::min(from, to), std::max(from, to), static_cast<std::int32_t>(t), k});
       }
@@ -163,10 +160,10 @@ struct IntersectionJudge::Impl {
     });
     for (std::size_t i = 0; i < sides.size(); ++i) {
       if (i > 0 && sides[i].a == sides[i - 1].a && sides[i].b == sides[i - 1].b) continue;
-      ownsSide[Z(sides[i].triangle)] |= static_cast<std::uint8_t>(1 << sides[i].corner);
+      ownsSide[Index(sides[i].triangle)] |= static_cast<std::uint8_t>(1 << sides[i].corner);
     }
     sides = std::vector<Side>();  // unlike `= {}` that gives the memory back
-    seen.resize(Z(vertices));
+    seen.resize(Index(vertices));
     placed.resize(triangles.size());
     for (std::size_t t = 0; t < placed.size(); ++t) placed[t].triangle = static_cast<std::int32_t>(t);
     const std::size_t leaves = Leaves();
@@ -176,7 +173,7 @@ struct IntersectionJudge::Impl {
 
   std::size_t Leaves() const { return (triangles.size() + kLeafTriangles - 1) / kLeafTriangles; }
   std::size_t LeafBegin(std::size_t leaf) const { return std::min(leaf * kLeafTriangles, triangles.size()); }
-  Corners CornersOf(std::size_t t) const { return {triangles[t].a, triangles[t].b, triangles[t].c}; }
+  Corners3 CornersOf(std::size_t t) const { return {triangles[t].a, triangles[t].b, triangles[t].c}; }
   bool IsObstacle(std::int32_t vertex) const { return vertex >= obstacles; }
 
   /// A position as it counts.
@@ -185,7 +182,7 @@ struct IntersectionJudge::Impl {
       assert(std::abs(a) <= kLargestExact);
       return std::abs(a) < kSmallestExact ? 0.0 : a;
     };
-    const Vec3& p = positions[Z(v)];
+    const Vec3& p = positions[Index(v)];
     return {counted(p.x), counted(p.y), counted(p.z)};
   }
 
@@ -195,7 +192,7 @@ struct IntersectionJudge::Impl {
     executor.ForChunks(static_cast<int>(chunks), [&](int chunk) {
       const std::size_t begin = std::size_t(chunk) * kChunkTriangles;
       for (std::size_t i = begin; i < std::min(begin + kChunkTriangles, triangles.size()); ++i) {
-        Bounds b = BoundsOf(CornersOf(Z(placed[i].triangle)));
+        Bounds b = BoundsOf(CornersOf(Index(placed[i].triangle)));
         b.Widen(slack);
         placed[i].box = Round(b);
       }
@@ -205,18 +202,18 @@ struct IntersectionJudge::Impl {
   /// Long thin triangles across all axes have bounds that meet all others. Where the frame of the triangle with the
   /// longest side has much smaller ones, it is taken. Floats are exact near zero: there the first vertex is.
   void ChooseFrame() {
-    for (std::int32_t v = 0; v < vertices; ++v) seen[Z(v)] = At(v);
+    for (std::int32_t v = 0; v < vertices; ++v) seen[Index(v)] = At(v);
     double longest = 0, farthest = 0, straight = 0;
     Vec3 along{1, 0, 0}, across{0, 1, 0};
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const Corners c = CornersOf(t);
+      const Corners3 c = CornersOf(t);
       straight += BoundsOf(c).Area();
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 side = seen[Z(c[(k + 1) % 3])] - seen[Z(c[k])];
+        const Vec3 side = seen[Index(c[(k + 1) % 3])] - seen[Index(c[k])];
         if (Dot(side, side) <= longest) continue;
         longest = Dot(side, side);
         along = side;
-        across = seen[Z(c[(k + 2) % 3])] - seen[Z(c[k])];
+        across = seen[Index(c[(k + 2) % 3])] - seen[Index(c[k])];
       }
     }
     along = UnitOr(along, {1, 0, 0});
@@ -232,16 +229,16 @@ struct IntersectionJudge::Impl {
     constexpr double kHalfUlp = 0x1p-53;
     slack = 8 * kHalfUlp * farthest;
     if (!(turned < kMuchSmaller * straight)) {
-      for (std::int32_t v = 0; v < vertices; ++v) seen[Z(v)] = At(v);
+      for (std::int32_t v = 0; v < vertices; ++v) seen[Index(v)] = At(v);
       slack = 0;
     }
     const Vec3 origin = seen[0];
     for (Vec3& p : seen) p -= origin;
   }
 
-  Bounds BoundsOf(const Corners& c) const {
+  Bounds BoundsOf(const Corners3& c) const {
     Bounds b;
-    for (const std::int32_t v : c) b.Add(seen[Z(v)]);
+    for (const std::int32_t v : c) b.Add(seen[Index(v)]);
     return b;
   }
 
@@ -251,7 +248,7 @@ struct IntersectionJudge::Impl {
     const std::size_t middle = node.firstLeaf + (node.endLeaf - node.firstLeaf) / 2;
     const auto begin = placed.begin() + std::ptrdiff_t(LeafBegin(node.firstLeaf));
     const auto end = placed.begin() + std::ptrdiff_t(LeafBegin(node.endLeaf));
-    Box centres;
+    TreeBox centres;
     for (auto p = begin; p != end; ++p) {
       for (int k = 0; k < 3; ++k) {
         centres.low[k] = std::min(centres.low[k], p->box.Centre(k));
@@ -289,7 +286,7 @@ struct IntersectionJudge::Impl {
     node.obstaclesOnly = true;
     for (std::size_t i = LeafBegin(node.firstLeaf); i < LeafBegin(node.endLeaf); ++i) {
       node.box.Add(placed[i].box);
-      node.obstaclesOnly = node.obstaclesOnly && IsObstacle(triangles[Z(placed[i].triangle)].a);
+      node.obstaclesOnly = node.obstaclesOnly && IsObstacle(triangles[Index(placed[i].triangle)].a);
     }
   }
 
@@ -316,7 +313,7 @@ struct IntersectionJudge::Impl {
     for (auto at = above.rbegin(); at != above.rend(); ++at) Gather(*at);
   }
 
-  bool Meet(const OwnEdge& edge, const Corners& c) const {
+  bool Meet(const OwnEdge& edge, const Corners3& c) const {
     const auto isCorner = [&](std::int32_t v) { return v == c[0] || v == c[1] || v == c[2]; };
     const bool shared = isCorner(edge.a);
     if (!shared && !isCorner(edge.b)) {
@@ -334,18 +331,18 @@ struct IntersectionJudge::Impl {
   void Query(std::size_t leaf, std::size_t most, Found& out) const {
     std::array<OwnEdge, 3 * kLeafTriangles> edges;
     std::size_t count = 0;
-    Box all;
+    TreeBox all;
     bool obstaclesOnly = true;
     for (std::size_t i = LeafBegin(leaf); i < LeafBegin(leaf + 1); ++i) {
-      const std::size_t t = Z(placed[i].triangle);
-      const Corners c = CornersOf(t);
+      const std::size_t t = Index(placed[i].triangle);
+      const Corners3 c = CornersOf(t);
       for (std::size_t k = 0; k < 3; ++k) {
         if ((ownsSide[t] >> k & 1) == 0) continue;
         const std::int32_t from = c[k], to = c[(k + 1) % 3];
         OwnEdge& edge = edges[count++] = {std::min(from, to), std::max(from, to), {}};
         Bounds bounds;
-        bounds.Add(seen[Z(from)]);
-        bounds.Add(seen[Z(to)]);
+        bounds.Add(seen[Index(from)]);
+        bounds.Add(seen[Index(to)]);
         edge.box = Round(bounds);
         all.Add(edge.box);
         obstaclesOnly = obstaclesOnly && IsObstacle(from);
@@ -369,7 +366,7 @@ struct IntersectionJudge::Impl {
         }
         for (std::size_t k = 0; k < nearCount; ++k) {
           const std::int32_t t = placed[near[k]].triangle;
-          if (Meet(edges[e], CornersOf(Z(t)))) out.Add({{edges[e].a, edges[e].b}, t}, most);
+          if (Meet(edges[e], CornersOf(Index(t)))) out.Add({{edges[e].a, edges[e].b}, t}, most);
         }
       }
     }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "collide/poses.h"
+#include "core/index.h"
 #include "mesh/topology.h"
 #include "mesh/vertex_cache.h"
 
@@ -13,10 +14,6 @@ namespace {
 
 /// Edges of the polygon that stands for a rim.
 constexpr int kRim = 48;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Some of what stands for a solid: vertices, and edges between them.
 struct Features {

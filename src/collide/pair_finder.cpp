@@ -13,6 +13,7 @@
 #include "collide/clusters.h"
 #include "collide/flat_regions.h"
 #include "core/aligned.h"
+#include "core/index.h"
 
 namespace percale {
 
@@ -30,10 +31,6 @@ constexpr std::size_t kSamples = 63;  // for a median
 static_assert(NearItems::kMostEdges == 3 * Clusters::kLeafItems * 3 * Clusters::kLeafItems);
 static_assert(NearItems::kMostTriangles == 3 * Clusters::kLeafItems * Clusters::kLeafItems);
 static_assert(TriangleShapes::kBlocks * kLanes == 2 * Clusters::kLeafItems);
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 int Blocks(std::int64_t count) {
   return static_cast<int>((count + kLanes - 1) / kLanes);
@@ -114,7 +111,7 @@ class Pairs {
 
 /// Of the corners of items of that type, as one array.
 template <class Item>
-const std::int32_t* Corners(std::span<const Item> items) {
+const std::int32_t* CornersOf(std::span<const Item> items) {
   static_assert(sizeof(Item) % sizeof(std::int32_t) == 0);
   return reinterpret_cast<const std::int32_t*>(items.data());
 }
@@ -255,7 +252,7 @@ LeafShapeArgs PairFinder::Impl::ShapeArgs(int begin, int end, bool haveCuts) {
   return {.begin = begin,
           .end = end,
           .triangleFirst = clusters.triangleFirst.data(),
-          .corners = Corners(std::span<const Triangle>(mesh.triangles)),
+          .corners = CornersOf(std::span<const Triangle>(mesh.triangles)),
           .vertexFirst = clusters.vertexFirst.data(),
           .vertices = clusters.vertices.data(),
           .inverse = regions.inverse.empty() ? nullptr : regions.inverse[0].data(),
@@ -356,9 +353,9 @@ void PairFinder::Impl::BoxItems() {
         kernels.itemBoxes({corners, cornersPerItem, items, rows.data(), to});
         to += Blocks(items);
       };
-      box(Corners(mesh.Edges(leaf)), 2, mesh.Edges(leaf).size());
-      box(Corners(mesh.Triangles(leaf)), 3, mesh.Triangles(leaf).size());
-      box(Corners(clusters.OwnVertices(leaf)), 1, clusters.OwnVertices(leaf).size());
+      box(CornersOf(mesh.Edges(leaf)), 2, mesh.Edges(leaf).size());
+      box(CornersOf(mesh.Triangles(leaf)), 3, mesh.Triangles(leaf).size());
+      box(CornersOf(clusters.OwnVertices(leaf)), 1, clusters.OwnVertices(leaf).size());
     }
   });
 }
@@ -377,9 +374,9 @@ void PairFinder::Impl::CompareItems(int firstChunk, int endChunk) {
     NearItems near;
     const auto compare = [&](const LeafPair& pair) {
       kernels.nearItems(ItemsOf(pair.a), ItemsOf(pair.b), pair.a == pair.b, near);
-      const auto vertices = [&](int leaf) { return Corners(clusters.OwnVertices(leaf)); };
-      const auto triangles = [&](int leaf) { return Corners(mesh.Triangles(leaf)); };
-      const auto edges = [&](int leaf) { return Corners(mesh.Edges(leaf)); };
+      const auto vertices = [&](int leaf) { return CornersOf(clusters.OwnVertices(leaf)); };
+      const auto triangles = [&](int leaf) { return CornersOf(mesh.Triangles(leaf)); };
+      const auto edges = [&](int leaf) { return CornersOf(mesh.Edges(leaf)); };
       add(vertexTriangle, vertexTriangleLists, kernels.writeVertexTriangle,
           {near.vertexTriangle, near.vertexA, near.triangleB, vertices(pair.a), triangles(pair.b), nullptr});
       add(vertexTriangle, vertexTriangleLists, kernels.writeVertexTriangle,

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace percale {
 namespace {
 
@@ -19,10 +21,6 @@ constexpr int kMostSearches = 10, kFewSearches = 4;
 constexpr double kLongest = 60;
 /// Cloth is in contact with itself below this share of the distance that the pair has in the flat mesh.
 constexpr double kOwnShare = 0.35;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Corners<double> Gather(std::span<const Vec3> x, const VertexQuad& quad) {
   Corners<double> corners;

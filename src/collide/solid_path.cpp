@@ -6,13 +6,13 @@
 namespace percale {
 namespace {
 
-constexpr int kMostAdvances = 48;
+constexpr int kMostPathAdvances = 48;
 /// What is nearer to the least distance than this share of it is there, or the last advances would take for ever.
-constexpr double kClose = 0.02;
+constexpr double kPathClose = 0.02;
 /// A straight way along a round solid comes nearer to it than its ends: so much of the least distance may go.
 constexpr double kDip = 0.5;
 /// Takes rounding off what may be advanced.
-constexpr double kSafe = 1 - 1e-9;
+constexpr double kPathSafe = 1 - 1e-9;
 
 Vec3 Between(const Vec3& a, const Vec3& b, double t) {
   return a + (b - a) * t;
@@ -25,14 +25,14 @@ double ShareOf(const PlacedSolid& solid, const Vec3& a, const Vec3& b, double le
   const double length = Length(b - a);
   const bool convex = IsConvex(solid.solid);
   double t = 0;
-  for (int advance = 0; advance < kMostAdvances; ++advance) {
+  for (int advance = 0; advance < kMostPathAdvances; ++advance) {
     const Vec3 at = Between(a, b, t);
     const SolidSample sample = DistanceTo(solid.solid, at);
     const double room = sample.distance - solid.thickness - least;
     if (room >= length * (1 - t)) return 1;
     if (convex && room + Dot(sample.normal, b - at) >= 0) return 1;
-    if (!(room > kClose * least)) break;
-    t += kSafe * room / length;
+    if (!(room > kPathClose * least)) break;
+    t += kPathSafe * room / length;
     if (t >= 1) return 1;
   }
   return t;
@@ -70,7 +70,7 @@ Vec3 Outside(const SolidStep& step, const Vec3& x, const Vec3& y, double least) 
   if (gap > Length(b - a) + least || !(gap > 0)) return y;
   const double floor = std::min(least, 0.999 * gap);
   const SolidSample end = DistanceTo(step.start.solid, b);
-  const double missing = (1 + kClose) * floor - (end.distance - thickness);
+  const double missing = (1 + kPathClose) * floor - (end.distance - thickness);
   const bool off = missing > 0;
   if (off) b += end.normal * missing;
   const double share = ShareOf(step.start, a, b, kDip * floor);

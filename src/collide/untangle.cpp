@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/index.h"
 #include "mesh/disjoint_sets.h"
 
 namespace percale {
@@ -24,10 +25,6 @@ constexpr int kNeighbours = 2;
 
 /// The weight of a part that is pinned.
 constexpr std::int64_t kHeld = std::numeric_limits<std::int64_t>::max();
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Vector3<double> Unit(const Vector3<double>& v) {
   const double length = std::sqrt(Dot(v, v));

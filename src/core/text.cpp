@@ -30,10 +30,6 @@ double ReadClassic(std::string_view text, bool& ok) {
   return number;
 }
 
-bool IsDigit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// Whether `text` is a number by JSON's grammar: no leading '+', zeros or '.', no hexadecimal.
 bool IsJsonNumber(std::string_view text) {
   std::size_t i = 0;

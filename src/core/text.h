@@ -11,6 +11,11 @@
 
 namespace percale {
 
+/// Whether it is one of 0 to 9, whatever the locale.
+inline bool IsDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
 /// The number with the fewest digits that read back the same, as JSON writes it: "0.1", "5000",
 /// "1e12". NaN and infinities give "NaN", "Infinity", "-Infinity", which are not JSON.
 std::string FormatNumber(double number);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "collide/predicates.h"
+#include "core/index.h"
 #include "mesh/topology.h"
 
 namespace percale::fabric {
@@ -22,10 +23,6 @@ constexpr double kLookBack = 10;
 constexpr int kMostTangled = 1 << 20;
 /// How near cloth may come to a solid, over the distance.
 constexpr double kLeastGap = 0.2;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Where each vertex of a cloth lies in the flat fabric, where that is one place for all its triangles; else where it
 /// starts.

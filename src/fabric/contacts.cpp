@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace percale::fabric {
 namespace {
 
@@ -24,10 +26,6 @@ constexpr double kLeastFit = 0.05, kMostFit = 0.5;
 constexpr double kFullCrossing = 0.1;
 /// A contact is as stiff as to stop what comes near within this share of its distance.
 constexpr double kStop = 0.3;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Vector3<double> Tangential(const Vector3<double>& v, const Vector3<double>& normal) {
   return v - normal * Dot(v, normal);

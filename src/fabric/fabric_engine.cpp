@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "collide/ball.h"
+#include "core/index.h"
 
 namespace percale::fabric {
 namespace {
@@ -28,10 +29,6 @@ constexpr int kParts = 4, kMostSplits = 2;
 /// then once more, since what is torn out in one go may jam for good.
 constexpr double kMostStretching = 1.5;
 constexpr int kMostStretchSplits = 3;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 bool InBounds(const Vec3& x) {
   return std::abs(x.x) <= kBound && std::abs(x.y) <= kBound && std::abs(x.z) <= kBound;

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/index.h"
 #include "mesh/cloth_model.h"
 #include "mesh/topology.h"
 
@@ -15,10 +16,6 @@ namespace {
 
 /// Points of the material per vertex beyond which it is no chart: pieces of a few triangles have no coarse grid.
 constexpr double kMostSeams = 1.5;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Turns a cloth's material coordinates so that u runs along the warp.
 Vec2 AlongWarp(const Vec2& p, double angle) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+
 namespace percale::fabric {
 namespace {
 
@@ -23,10 +25,6 @@ constexpr double kTouchingTolerance = 1e-3, kTouchingGain = 0.01;
 /// A correction gained what was foretold if it gained that within this share. What is left then is the error of linear
 /// systems, which are better solved longer than anew.
 constexpr double kForetold = 0.2;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

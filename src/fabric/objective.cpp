@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/index.h"
 #include "fabric/energy/air.h"
 #include "fabric/energy/attachment.h"
 
@@ -13,10 +14,6 @@ namespace {
 /// Share of a plate's buckling stress on its own inertia, 2 sqrt(D rho) / h, down to which compression enters the
 /// second derivative: so far wrinkles may form within one Newton step. See docs/solver.md.
 constexpr double kCompressionShare = 1;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 Vector3<double> At(std::span<const Vec3> y, std::int32_t v) {
   return From<double>(y[Index(v)]);

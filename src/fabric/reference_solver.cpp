@@ -8,6 +8,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include "core/index.h"
 #include "fabric/energy/attachment.h"
 
 namespace percale::fabric {
@@ -16,14 +17,10 @@ namespace {
 // The compression that the second derivative keeps, in shares of what objective.cpp keeps: as much as the matrix
 // stands, for then Newton's method is quadratic.
 constexpr double kFirstShare = 4, kMostShare = 64, kGrowth = 2, kRetreat = 4, kLeastShare = 1e-3;
-constexpr double kSufficient = 1e-4;
-constexpr int kMostHalvings = 40;
+constexpr double kReferenceSufficient = 1e-4;
+constexpr int kReferenceHalvings = 40;
 
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
-
-Vector3<double> At(std::span<const Vec3> y, std::int32_t v) {
+Vector3<double> PointOf(std::span<const Vec3> y, std::int32_t v) {
   return From<double>(y[Index(v)]);
 }
 
@@ -45,12 +42,13 @@ void ReferenceSolver::Begin(const StepSettings& step) {
   step_ = step;
   for (std::size_t t = 0; t < model_.triangles.size(); ++t) {
     const Triangle& tri = model_.triangles[t];
-    startStrain_[t] =
-        GreenStrain(Deformation(model_.Rest(t), At(step.start, tri.a), At(step.start, tri.b), At(step.start, tri.c)));
+    startStrain_[t] = GreenStrain(Deformation(model_.Rest(t), PointOf(step.start, tri.a), PointOf(step.start, tri.b),
+                                              PointOf(step.start, tri.c)));
   }
   for (std::size_t h = 0; h < model_.hinges.size(); ++h) {
     const std::int32_t* v = model_.hinges[h].vertex;
-    startAngle_[h] = HingeAngle(At(step.start, v[0]), At(step.start, v[1]), At(step.start, v[2]), At(step.start, v[3]));
+    startAngle_[h] = HingeAngle(PointOf(step.start, v[0]), PointOf(step.start, v[1]), PointOf(step.start, v[2]),
+                                PointOf(step.start, v[3]));
   }
 }
 
@@ -69,7 +67,8 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
 
   for (int v = 0; v < model_.vertexCount; ++v) {
     if (!step_.free[Index(v)]) continue;
-    const Vector3<double> off = At(y, v) - From<double>(step_.Predicted(Index(v))), way = At(y, v) - At(step_.start, v);
+    const Vector3<double> off = PointOf(y, v) - From<double>(step_.Predicted(Index(v))),
+                          way = PointOf(y, v) - PointOf(step_.start, v);
     const VertexLoad load = step_.loads.empty() ? VertexLoad{} : step_.loads[Index(v)];
     const double inertia = model_.mass[Index(v)] * perStep * perStep;
     const Vector3<double> pulled = load.stiffness * way, force = From<double>(load.force);
@@ -86,7 +85,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     RestTriangle<double> rest = model_.Rest(t);
     rest.area *= model_.Strength(t);
     const Membrane& membrane = model_.membranes[cloth];
-    const DeformationGradient<double> f = Deformation(rest, At(y, tri.a), At(y, tri.b), At(y, tri.c));
+    const DeformationGradient<double> f = Deformation(rest, PointOf(y, tri.a), PointOf(y, tri.b), PointOf(y, tri.c));
     const MembraneDamping<double> damping{membrane.damping * perStep, startStrain_[t]};
     const bool rubber = membrane.kind == MembraneLaw::NeoHookean;
     const MembraneStress<double> stress =
@@ -106,7 +105,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
       }
     }
     if (const double pressure = model_.pressure[cloth]; pressure != 0) {
-      const EnclosedVolume<double> volume = Volume(At(y, tri.a), At(y, tri.b), At(y, tri.c));
+      const EnclosedVolume<double> volume = Volume(PointOf(y, tri.a), PointOf(y, tri.b), PointOf(y, tri.c));
       sum -= pressure * volume.volume;
       for (int k = 0; k < 3; ++k) addGradient(corners[k], volume.gradient[k] * -pressure);
     }
@@ -123,7 +122,8 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
         const bool first = hinge.triangle[0] == static_cast<std::int32_t>(t);
         const std::int32_t from = corners[(k + 1) % 3], to = corners[(k + 2) % 3];
         vertices[3 + k] = hinge.vertex[first ? 3 : 2];
-        hinges[k] = HingeGradient(At(y, from), At(y, to), At(y, corners[k]), At(y, vertices[3 + k]));
+        hinges[k] =
+            HingeGradient(PointOf(y, from), PointOf(y, to), PointOf(y, corners[k]), PointOf(y, vertices[3 + k]));
         angle.edge[k] = hinges[k].angle;
         atRest.edge[k] = hinge.restAngle;
         drag.start.edge[k] = startAngle_[Index(h)];
@@ -152,7 +152,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
   for (const FabricTether& tether : model_.tethers) {
     if (!step_.free[Index(tether.vertex)]) continue;
     const PointEnergy<double> pull =
-        TetherEnergy(tether.stiffness, From<double>(tether.anchor), tether.length, At(y, tether.vertex));
+        TetherEnergy(tether.stiffness, From<double>(tether.anchor), tether.length, PointOf(y, tether.vertex));
     sum += pull.energy;
     addGradient(tether.vertex, pull.gradient);
     block(tether.vertex, tether.vertex, pull.hessian);
@@ -163,7 +163,7 @@ void ReferenceSolver::Evaluate(std::span<const Vec3> y, double* energy, std::spa
     // Rows sum to zero: counted from v, only short ways cancel.
     Vector3<double> force;
     model_.plates.ForRow(v, [&](std::int32_t column, double value) {
-      const Vector3<double> way = At(y, column) - At(y, v);
+      const Vector3<double> way = PointOf(y, column) - PointOf(y, v);
       force += way * value;
       sum -= 0.25 * value * Dot(way, way);
       block(v, column, Diagonal(value));
@@ -229,7 +229,7 @@ ReferenceResult ReferenceSolver::Solve(std::span<Vec3> y, const ReferenceSetting
     const double slope = -right.dot(way);
     double alpha = 1, moved = 0;
     int halvings = 0;
-    for (; halvings <= kMostHalvings; ++halvings, alpha /= 2) {
+    for (; halvings <= kReferenceHalvings; ++halvings, alpha /= 2) {
       moved = 0;
       for (std::size_t v = 0; v < count; ++v) {
         const Eigen::Vector3d d = alpha * way.segment<3>(static_cast<Eigen::Index>(3 * v));
@@ -237,12 +237,12 @@ ReferenceResult ReferenceSolver::Solve(std::span<Vec3> y, const ReferenceSetting
         moved = std::max(moved, d.norm());
       }
       const double there = Energy(trial);
-      if (there <= energy + kSufficient * alpha * slope || moved <= settings.tolerance) {
+      if (there <= energy + kReferenceSufficient * alpha * slope || moved <= settings.tolerance) {
         energy = there;
         break;
       }
     }
-    if (halvings > kMostHalvings) {  // rounding, or a direction that the floor spoiled
+    if (halvings > kReferenceHalvings) {  // rounding, or a direction that the floor spoiled
       if (share == 0) break;
       share = 0;
       continue;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/index.h"
 #include "core/text.h"
 #include "mesh/topology.h"
 
@@ -15,10 +16,6 @@ namespace percale {
 namespace {
 
 constexpr double kRounding = 1e-9;  // Generously, of a volume: 0.999999 is told as 1.
-
-std::size_t Z(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// A volume below this share of the cube of the box's diagonal is none.
 constexpr double kFlat = 1e-9;
@@ -45,23 +42,25 @@ struct Piece {
 std::vector<Piece> FindPieces(const RestMesh& mesh, const Topology& topology, std::span<const Vec3> positions) {
   std::vector<Piece> pieces(static_cast<std::size_t>(topology.componentCount));
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    if (topology.component[v] >= 0) pieces[Z(topology.component[v])].Add(positions[v]);
+    if (topology.component[v] >= 0) pieces[Index(topology.component[v])].Add(positions[v]);
   }
   for (const Triangle& t : mesh.triangles) {
-    Piece& piece = pieces[Z(topology.component[Z(t.a)])];
+    Piece& piece = pieces[Index(topology.component[Index(t.a)])];
     // Of the tetrahedra over the triangles with a tip near them, so that little is lost by rounding.
-    const Vec3 a = positions[Z(t.a)] - piece.low, b = positions[Z(t.b)] - piece.low, c = positions[Z(t.c)] - piece.low;
+    const Vec3 a = positions[Index(t.a)] - piece.low, b = positions[Index(t.b)] - piece.low,
+               c = positions[Index(t.c)] - piece.low;
     piece.volume += Dot(a, Cross(b, c)) / 6;
   }
   for (const std::vector<std::int32_t>* edges : {&topology.boundaryEdges, &topology.nonManifoldEdges}) {
-    for (const std::int32_t e : *edges) pieces[Z(topology.component[Z(topology.edges[Z(e)].a)])].open = true;
+    for (const std::int32_t e : *edges)
+      pieces[Index(topology.component[Index(topology.edges[Index(e)].a)])].open = true;
   }
   return pieces;
 }
 
 double MeanEdge(const Topology& topology, std::span<const Vec3> positions) {
   double sum = 0;
-  for (const Edge& e : topology.edges) sum += Length(positions[Z(e.b)] - positions[Z(e.a)]);
+  for (const Edge& e : topology.edges) sum += Length(positions[Index(e.b)] - positions[Index(e.a)]);
   return sum / static_cast<double>(std::max<std::size_t>(topology.edges.size(), 1));
 }
 
@@ -106,7 +105,7 @@ Diagnostics TurnOutwards(RestMesh& mesh) {
   if (warnings.empty()) return warnings;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     Triangle& triangle = mesh.triangles[t];
-    if (!turned[Z(topology.component[Z(triangle.a)])]) continue;
+    if (!turned[Index(topology.component[Index(triangle.a)])]) continue;
     std::swap(triangle.b, triangle.c);
     std::swap(mesh.material[3 * t + 1], mesh.material[3 * t + 2]);
     for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * t + k].y = -mesh.material[3 * t + k].y;
@@ -122,7 +121,7 @@ Diagnostics FindCacheProblems(const RestMesh& mesh, const VertexCache& cache, do
   bool otherSize = false, insideOut = false;
   Diagnostics warnings;
   for (std::int32_t s = 0; s < cache.samples; ++s) {
-    const float* x = cache.positions.data() + 3 * positions.size() * Z(s);
+    const float* x = cache.positions.data() + 3 * positions.size() * Index(s);
     for (Vec3& position : positions) {
       position = Vec3{double(x[0]), double(x[1]), double(x[2])} * scale;
       x += 3;

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "core/index.h"
 #include "mesh/rest_mesh.h"
 #include "mesh/topology.h"
 
@@ -15,10 +16,6 @@ namespace {
 
 /// So many are named in a message.
 constexpr std::size_t kNamed = 5;
-
-std::size_t Z(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 bool Within(double x) {
   return std::abs(x) <= kFarthestVertex;  // false for NaN
@@ -31,7 +28,7 @@ std::vector<std::int32_t> FindDuplicates(std::size_t vertexCount, std::span<cons
   };
   // By the lowest vertex first, which takes one pass; then the few that share it by the others.
   std::vector<std::int32_t> begin(vertexCount + 1, 0);
-  for (const Triangle& t : triangles) ++begin[Z(std::min({t.a, t.b, t.c})) + 1];
+  for (const Triangle& t : triangles) ++begin[Index(std::min({t.a, t.b, t.c})) + 1];
   for (std::size_t v = 0; v < vertexCount; ++v) begin[v + 1] += begin[v];
   std::vector<Rest> sorted(triangles.size());
   std::vector<std::int32_t> end(begin.begin(), begin.end() - 1);
@@ -39,7 +36,7 @@ std::vector<std::int32_t> FindDuplicates(std::size_t vertexCount, std::span<cons
     const Triangle& t = triangles[i];
     const std::int32_t low = std::min({t.a, t.b, t.c}), high = std::max({t.a, t.b, t.c});
     const std::int32_t middle = std::max(std::min(t.a, t.b), std::min(std::max(t.a, t.b), t.c));
-    sorted[Z(end[Z(low)]++)] = {middle, high, static_cast<std::int32_t>(i)};
+    sorted[Index(end[Index(low)]++)] = {middle, high, static_cast<std::int32_t>(i)};
   }
   std::vector<std::int32_t> duplicates;
   for (std::size_t v = 0; v < vertexCount; ++v) {
@@ -74,7 +71,7 @@ void FindErrors(const RestMesh& mesh, MeshProblems& problems) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
     const auto number = static_cast<std::int32_t>(i);
-    if (std::min({t.a, t.b, t.c}) < 0 || Z(std::max({t.a, t.b, t.c})) >= vertexCount) {
+    if (std::min({t.a, t.b, t.c}) < 0 || Index(std::max({t.a, t.b, t.c})) >= vertexCount) {
       problems.badIndex.push_back(number);
     } else if (t.a == t.b || t.b == t.c || t.c == t.a) {
       problems.repeatedVertex.push_back(number);
@@ -124,7 +121,7 @@ std::vector<std::int32_t> Renumbered(std::size_t count, const std::vector<std::i
   std::int32_t next = 0;
   auto drop = dropped.begin();
   for (std::size_t i = 0; i < count; ++i) {
-    const bool goes = drop != dropped.end() && Z(*drop) == i;
+    const bool goes = drop != dropped.end() && Index(*drop) == i;
     if (goes) ++drop;
     map[i] = goes ? -1 : next++;
   }
@@ -133,7 +130,7 @@ std::vector<std::int32_t> Renumbered(std::size_t count, const std::vector<std::i
 
 /// Mirrors a triangle in the fabric.
 void Mirror(RestMesh& mesh, std::int32_t t) {
-  for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Z(t) + k].y = -mesh.material[3 * Z(t) + k].y;
+  for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Index(t) + k].y = -mesh.material[3 * Index(t) + k].y;
 }
 
 /// Triangles that lie on the same side of an edge as their neighbour in the texture, though both have the edge at the
@@ -141,8 +138,8 @@ void Mirror(RestMesh& mesh, std::int32_t t) {
 std::vector<std::int32_t> FindFolded(const Topology& topology, std::span<const Triangle> triangles,
                                      std::span<const std::int32_t> old, std::span<const Vec2> cornerUv) {
   const auto uvOf = [&](std::int32_t triangle, std::int32_t vertex) {
-    const Triangle& t = triangles[Z(triangle)];
-    return cornerUv[3 * Z(old[Z(triangle)]) + (t.a == vertex ? 0 : t.b == vertex ? 1 : 2)];
+    const Triangle& t = triangles[Index(triangle)];
+    return cornerUv[3 * Index(old[Index(triangle)]) + (t.a == vertex ? 0 : t.b == vertex ? 1 : 2)];
   };
   std::vector<std::int32_t> folded;
   for (std::size_t e = 0; e < topology.edges.size(); ++e) {
@@ -154,7 +151,7 @@ std::vector<std::int32_t> FindFolded(const Topology& topology, std::span<const T
     const auto side = [&](const Vec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); };
     const auto& [apex0, apex1] = topology.edgeOpposite[e];
     if (!(side(uvOf(t0, apex0)) * side(uvOf(t1, apex1)) > 0)) continue;
-    folded.push_back(MaterialArea(cornerUv, Z(old[Z(t0)])) < 0 ? old[Z(t0)] : old[Z(t1)]);
+    folded.push_back(MaterialArea(cornerUv, Index(old[Index(t0)])) < 0 ? old[Index(t0)] : old[Index(t1)]);
   }
   std::sort(folded.begin(), folded.end());
   folded.erase(std::unique(folded.begin(), folded.end()), folded.end());
@@ -184,12 +181,12 @@ MeshProblems FindMeshProblems(const RestMesh& mesh, std::span<const Vec2> corner
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     if (topology.component[v] < 0) problems.unreferenced.push_back(static_cast<std::int32_t>(v));
   }
-  for (const std::int32_t edge : topology.nonManifoldEdges) problems.nonManifold.push_back(topology.edges[Z(edge)]);
+  for (const std::int32_t edge : topology.nonManifoldEdges) problems.nonManifold.push_back(topology.edges[Index(edge)]);
   const TurnedTriangles orientation = FindOrientation(topology);
-  for (const std::int32_t t : orientation.turn) problems.turned.push_back(old[Z(t)]);
-  for (const std::int32_t t : orientation.oneSided) problems.oneSided.push_back(old[Z(t)]);
+  for (const std::int32_t t : orientation.turn) problems.turned.push_back(old[Index(t)]);
+  for (const std::int32_t t : orientation.oneSided) problems.oneSided.push_back(old[Index(t)]);
   for (const std::int32_t t : old) {
-    if (MaterialArea(mesh.material, Z(t)) < 0) problems.mirrored.push_back(t);
+    if (MaterialArea(mesh.material, Index(t)) < 0) problems.mirrored.push_back(t);
   }
   if (!cornerUv.empty()) problems.folded = FindFolded(topology, triangles, old, cornerUv);
   return problems;
@@ -252,8 +249,8 @@ std::vector<MeshProblem> DescribeMeshProblems(const MeshProblems& problems) {
 MeshMap RepairMesh(RestMesh& mesh, const MeshProblems& problems) {
   assert(!problems.HasErrors());
   for (const std::int32_t t : problems.turned) {
-    std::swap(mesh.triangles[Z(t)].b, mesh.triangles[Z(t)].c);
-    std::swap(mesh.material[3 * Z(t) + 1], mesh.material[3 * Z(t) + 2]);
+    std::swap(mesh.triangles[Index(t)].b, mesh.triangles[Index(t)].c);
+    std::swap(mesh.material[3 * Index(t) + 1], mesh.material[3 * Index(t) + 2]);
     Mirror(mesh, t);  // or turning would have made it clockwise
   }
   for (const std::int32_t t : problems.mirrored) Mirror(mesh, t);
@@ -263,7 +260,7 @@ MeshMap RepairMesh(RestMesh& mesh, const MeshProblems& problems) {
   if (!problems.duplicates.empty()) {
     for (std::size_t t = 0; t < map.triangles.size(); ++t) {
       if (map.triangles[t] < 0) continue;
-      for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Z(map.triangles[t]) + k] = mesh.material[3 * t + k];
+      for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Index(map.triangles[t]) + k] = mesh.material[3 * t + k];
     }
     DropEntries(mesh.triangles, map.triangles);
     mesh.material.resize(3 * mesh.triangles.size());
@@ -272,11 +269,12 @@ MeshMap RepairMesh(RestMesh& mesh, const MeshProblems& problems) {
     DropEntries(mesh.positions, map.vertices);
     DropEntries(mesh.uv, map.vertices);
     DropEntries(mesh.source, map.vertices);
-    for (Triangle& t : mesh.triangles) t = {map.vertices[Z(t.a)], map.vertices[Z(t.b)], map.vertices[Z(t.c)]};
+    for (Triangle& t : mesh.triangles)
+      t = {map.vertices[Index(t.a)], map.vertices[Index(t.b)], map.vertices[Index(t.c)]};
     for (VertexGroup& group : mesh.groups) {
       std::vector<std::int32_t> kept;
       for (const std::int32_t v : group.vertices) {
-        if (map.vertices[Z(v)] >= 0) kept.push_back(map.vertices[Z(v)]);
+        if (map.vertices[Index(v)] >= 0) kept.push_back(map.vertices[Index(v)]);
       }
       group.vertices = std::move(kept);
     }

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/index.h"
 #include "mesh/disjoint_sets.h"
 
 namespace percale {
 namespace {
 
-std::size_t Z(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 std::int32_t Corner(const Triangle& t, int k) {
   return k == 0 ? t.a : k == 1 ? t.b : t.c;
 }
@@ -40,7 +38,7 @@ void FindComponents(Topology& topology, std::size_t vertexCount, std::span<const
   for (std::size_t v = 0; v < vertexCount; ++v) {
     if (topology.cornerBegin[v] == topology.cornerBegin[v + 1]) continue;
     const std::int32_t root = pieces.Find(static_cast<std::int32_t>(v));
-    topology.component[v] = Z(root) == v ? topology.componentCount++ : topology.component[Z(root)];
+    topology.component[v] = Index(root) == v ? topology.componentCount++ : topology.component[Index(root)];
   }
 }
 
@@ -84,32 +82,32 @@ Topology BuildTopology(std::size_t vertexCount, std::span<const Triangle> triang
 
   topology.cornerBegin.assign(vertexCount + 1, 0);
   for (const Triangle& t : triangles) {
-    for (int k = 0; k < 3; ++k) ++topology.cornerBegin[Z(Corner(t, k))];
+    for (int k = 0; k < 3; ++k) ++topology.cornerBegin[Index(Corner(t, k))];
   }
   BeginsFromCounts(topology.cornerBegin);
   topology.corners.resize(sides);
   std::vector<std::int32_t> end = topology.cornerBegin;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k)
-      topology.corners[Z(end[Z(Corner(triangles[t], k))]++)] = static_cast<std::int32_t>(3 * t) + k;
+      topology.corners[Index(end[Index(Corner(triangles[t], k))]++)] = static_cast<std::int32_t>(3 * t) + k;
   }
 
   // The sides by the lower of their ends; then, within one lower end, by the other end and their number.
   struct Side {
     std::int32_t high, side;
   };
-  const auto from = [&](std::int32_t side) { return Corner(triangles[Z(side / 3)], side % 3); };
+  const auto from = [&](std::int32_t side) { return Corner(triangles[Index(side / 3)], side % 3); };
   std::vector<std::int32_t> begin(vertexCount + 1, 0);
   for (const Triangle& t : triangles) {
-    for (int k = 0; k < 3; ++k) ++begin[Z(std::min(Corner(t, k), Corner(t, (k + 1) % 3)))];
+    for (int k = 0; k < 3; ++k) ++begin[Index(std::min(Corner(t, k), Corner(t, (k + 1) % 3)))];
   }
   BeginsFromCounts(begin);
   std::vector<Side> sorted(sides);
   end = begin;
-  for (std::int32_t side = 0; Z(side) < sides; ++side) {
+  for (std::int32_t side = 0; Index(side) < sides; ++side) {
     const std::int32_t a = from(side), b = from(Next(side));
     assert(a != b);
-    sorted[Z(end[Z(std::min(a, b))]++)] = {std::max(a, b), side};
+    sorted[Index(end[Index(std::min(a, b))]++)] = {std::max(a, b), side};
   }
   topology.sideEdges.resize(sides);
   for (auto* list : {&topology.edgeTriangles, &topology.edgeOpposite}) list->reserve(sides / 2 + vertexCount / 8);
@@ -122,7 +120,7 @@ Topology BuildTopology(std::size_t vertexCount, std::span<const Triangle> triang
       const auto edge = static_cast<std::int32_t>(topology.edges.size());
       const auto low = static_cast<std::int32_t>(v);
       auto stop = s;
-      for (; stop != last && stop->high == s->high; ++stop) topology.sideEdges[Z(stop->side)] = edge;
+      for (; stop != last && stop->high == s->high; ++stop) topology.sideEdges[Index(stop->side)] = edge;
       topology.edges.push_back({low, s->high});
       std::array<std::int32_t, 2> meeting{-1, -1}, opposite{-1, -1};
       if (stop - s <= 2) {
@@ -154,7 +152,7 @@ TurnedTriangles FindOrientation(const Topology& topology) {
   TurnedTriangles result;
   const std::size_t count = topology.sideEdges.size() / 3;
   std::vector<bool> inconsistent(topology.edges.size());
-  for (const std::int32_t edge : topology.inconsistentEdges) inconsistent[Z(edge)] = true;
+  for (const std::int32_t edge : topology.inconsistentEdges) inconsistent[Index(edge)] = true;
   std::vector<std::int8_t> turned(count, -1);  // against the lowest triangle of the patch; -1: not met yet
   std::vector<std::int32_t> patch;
   for (std::size_t seed = 0; seed < count; ++seed) {
@@ -165,17 +163,17 @@ TurnedTriangles FindOrientation(const Topology& topology) {
     std::size_t different = 0;
     for (std::size_t i = 0; i < patch.size(); ++i) {
       const std::int32_t t = patch[i];
-      different += turned[Z(t)] != 0 ? 1 : 0;
+      different += turned[Index(t)] != 0 ? 1 : 0;
       for (int k = 0; k < 3; ++k) {
-        const std::int32_t edge = topology.sideEdges[3 * Z(t) + static_cast<std::size_t>(k)];
-        const auto& both = topology.edgeTriangles[Z(edge)];
+        const std::int32_t edge = topology.sideEdges[3 * Index(t) + static_cast<std::size_t>(k)];
+        const auto& both = topology.edgeTriangles[Index(edge)];
         if (both[1] < 0) continue;
         const std::int32_t other = both[0] == t ? both[1] : both[0];
-        const auto wanted = static_cast<std::int8_t>((turned[Z(t)] != 0) != inconsistent[Z(edge)] ? 1 : 0);
-        if (turned[Z(other)] < 0) {
-          turned[Z(other)] = wanted;
+        const auto wanted = static_cast<std::int8_t>((turned[Index(t)] != 0) != inconsistent[Index(edge)] ? 1 : 0);
+        if (turned[Index(other)] < 0) {
+          turned[Index(other)] = wanted;
           patch.push_back(other);
-        } else if (turned[Z(other)] != wanted) {
+        } else if (turned[Index(other)] != wanted) {
           twoSided = false;
         }
       }
@@ -186,7 +184,7 @@ TurnedTriangles FindOrientation(const Topology& topology) {
     }
     const bool turnDifferent = 2 * different <= patch.size();
     for (const std::int32_t t : patch) {
-      if ((turned[Z(t)] != 0) == turnDifferent) result.turn.push_back(t);
+      if ((turned[Index(t)] != 0) == turnDifferent) result.turn.push_back(t);
     }
   }
   std::sort(result.turn.begin(), result.turn.end());
@@ -222,23 +220,23 @@ std::vector<std::int32_t> LocalityOrder(std::span<const Vec3> positions) {
 void ReorderMesh(RestMesh& mesh, std::span<const std::int32_t> order) {
   assert(order.size() == mesh.positions.size());
   std::vector<std::int32_t> number(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) number[Z(order[i])] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < order.size(); ++i) number[Index(order[i])] = static_cast<std::int32_t>(i);
   const auto take = [&](auto& values) {
     if (values.empty()) return;
     auto old = values;
-    for (std::size_t i = 0; i < order.size(); ++i) values[i] = old[Z(order[i])];
+    for (std::size_t i = 0; i < order.size(); ++i) values[i] = old[Index(order[i])];
   };
   take(mesh.positions);
   take(mesh.uv);
   take(mesh.source);
   for (VertexGroup& group : mesh.groups) {
-    for (std::int32_t& v : group.vertices) v = number[Z(v)];
+    for (std::int32_t& v : group.vertices) v = number[Index(v)];
     std::sort(group.vertices.begin(), group.vertices.end());
   }
-  for (Triangle& t : mesh.triangles) t = {number[Z(t.a)], number[Z(t.b)], number[Z(t.c)]};
+  for (Triangle& t : mesh.triangles) t = {number[Index(t.a)], number[Index(t.b)], number[Index(t.c)]};
 
   const auto lowest = [&](std::int32_t t) {
-    return std::min({mesh.triangles[Z(t)].a, mesh.triangles[Z(t)].b, mesh.triangles[Z(t)].c});
+    return std::min({mesh.triangles[Index(t)].a, mesh.triangles[Index(t)].b, mesh.triangles[Index(t)].c});
   };
   std::vector<std::int32_t> sorted(mesh.triangles.size());
   std::iota(sorted.begin(), sorted.end(), 0);
@@ -249,8 +247,9 @@ void ReorderMesh(RestMesh& mesh, std::span<const std::int32_t> order) {
   const std::vector<Triangle> triangles = mesh.triangles;
   const std::vector<Vec2> material = mesh.material;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    mesh.triangles[i] = triangles[Z(sorted[i])];
-    for (std::size_t k = 0; k < 3 && !material.empty(); ++k) mesh.material[3 * i + k] = material[3 * Z(sorted[i]) + k];
+    mesh.triangles[i] = triangles[Index(sorted[i])];
+    for (std::size_t k = 0; k < 3 && !material.empty(); ++k)
+      mesh.material[3 * i + k] = material[3 * Index(sorted[i]) + k];
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "collide/ball.h"
 #include "collide/boxes.h"
+#include "core/index.h"
 
 namespace percale::springs {
 namespace {
@@ -19,10 +20,6 @@ constexpr double kBendingShare = 0.2;  // bending springs have this share of ks
 constexpr double kBound = 1e6;         // m; a cloth this far out has diverged
 constexpr int kPointsPerChunk = 2560;  // of all loops; below it a second thread does not pay
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Point p of arrays with one axis each.
 Vec3 Get(const double* const axes[3], int p) {

@@ -9,6 +9,7 @@
 #include "collide/obstacles.h"
 #include "collide/poses.h"
 #include "collide/proximity.h"
+#include "core/index.h"
 #include "math/vector3.h"
 
 namespace percale {
@@ -16,10 +17,6 @@ namespace {
 
 /// Friction that is less than all there can be by no more than this share of it was cut off there.
 constexpr double kRounding = 1e-9;
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Finds back what the touches of a state are about.
 class Reader {

@@ -101,12 +101,12 @@ constexpr EngineTable FabricTable() {
   return table;
 }
 
-constexpr EngineTable kSprings = SpringsTable(), kFabric = FabricTable();
+constexpr EngineTable kSpringsTable = SpringsTable(), kFabricTable = FabricTable();
 
 }  // namespace
 
 const EngineTable& FindEngine(Engine engine) {
-  return engine == Engine::Fabric ? kFabric : kSprings;
+  return engine == Engine::Fabric ? kFabricTable : kSpringsTable;
 }
 
 }  // namespace percale

@@ -10,8 +10,8 @@
 namespace percale {
 namespace {
 
-constexpr double kRestitution = 0.5;  // share of the speed along the normal that a bounce gives back
-constexpr double kFarthest = 100;     // m; a ball this far away is nobody's concern
+constexpr double kRestitution = 0.5;   // share of the speed along the normal that a bounce gives back
+constexpr double kFarthestBall = 100;  // m; a ball this far away is nobody's concern
 
 /// Puts a ball that has sunk in by `depth` [m] back along the unit normal, and turns its velocity.
 void Bounce(Ball& ball, const Vec3& normal, double depth, double friction) {
@@ -75,7 +75,7 @@ void MoveBalls(const Scene& scene, double time, double dt, std::vector<Ball>& ba
     }
   }
   balls.erase(std::remove_if(balls.begin(), balls.end(),
-                             [](const Ball& ball) { return !(Length(ball.position) <= kFarthest); }),
+                             [](const Ball& ball) { return !(Length(ball.position) <= kFarthestBall); }),
               balls.end());
 }
 

@@ -8,13 +8,10 @@
 
 #include "collide/intersections.h"
 #include "core/executor.h"
+#include "core/index.h"
 
 namespace percale {
 namespace {
-
-std::size_t Z(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::vector<ClothTopology> TopologyOf(const World& world) {
   std::vector<ClothTopology> cloths;
@@ -63,14 +60,14 @@ struct ClothJudge::Impl {
     const IntersectionCount found = judge.Count(x, executor, most);
     ClothIntersections named{found.count, {}};
     for (const Intersection& each : found.first) {
-      const Triangle& t = triangles[Z(each.triangle)];
+      const Triangle& t = triangles[Index(each.triangle)];
       ClothIntersection one;
       one.edgeCloth = RangeOf(firstVertex, each.edge[0]);
       one.triangleCloth = RangeOf(firstTriangle, each.triangle);
-      const std::int32_t shift = firstVertex[Z(one.edgeCloth)];
+      const std::int32_t shift = firstVertex[Index(one.edgeCloth)];
       one.edge = {each.edge[0] - shift, each.edge[1] - shift};
-      one.triangle = each.triangle - firstTriangle[Z(one.triangleCloth)];
-      one.place = Meeting(x[Z(each.edge[0])], x[Z(each.edge[1])], x[Z(t.a)], x[Z(t.b)], x[Z(t.c)]);
+      one.triangle = each.triangle - firstTriangle[Index(one.triangleCloth)];
+      one.place = Meeting(x[Index(each.edge[0])], x[Index(each.edge[1])], x[Index(t.a)], x[Index(t.b)], x[Index(t.c)]);
       named.first.push_back(one);
     }
     return named;
@@ -101,7 +98,7 @@ ClothIntersections ClothJudge::Count(const World& world, int most) {
 }
 
 ClothIntersections ClothJudge::Count(std::span<const Vec3> positions, int most) {
-  assert(positions.size() == Z(impl_->firstVertex.back()));
+  assert(positions.size() == Index(impl_->firstVertex.back()));
   return impl_->Count(positions, most);
 }
 

@@ -6,12 +6,10 @@
 #include <tuple>
 #include <utility>
 
+#include "core/index.h"
+
 namespace percale {
 namespace {
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 double SquaredLength(const Vec3& a) {
   return Dot(a, a);
