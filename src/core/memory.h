@@ -1,10 +1,18 @@
 #pragma once
 /// \file
-/// How much memory there is, so that a scene that cannot fit is refused before it is allocated.
+/// How much memory there is, so that a scene that cannot fit is refused before it is allocated, and what of it is used.
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace percale {
+
+/// What an array occupies.
+template <class T, class Allocator>
+std::size_t BytesOf(const std::vector<T, Allocator>& array) {
+  return array.capacity() * sizeof(T);
+}
 
 /// Bytes of memory that this process may use: the machine's, or its container's where that is less
 /// (Linux). 0 where the system does not say.

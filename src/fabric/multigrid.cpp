@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "core/memory.h"
 #include "fabric/real4.h"
 #include "fabric/slots.h"
 #include "fabric/window.h"
@@ -19,11 +20,6 @@ constexpr int kRestrictChunk = 128;  // nodes that one chunk restricts to
 constexpr int kExtraParts = 16;      // each marks all nodes of a level, so there is a fixed number of them
 constexpr int kMostDirect = 200;     // nodes up to which the coarsest level is factored: 6 ms
 constexpr int kCoarsestSweeps = 4;   // of Jacobi where it is larger
-
-template <class T, class Allocator>
-std::size_t Bytes(const std::vector<T, Allocator>& array) {
-  return array.capacity() * sizeof(T);
-}
 
 }  // namespace
 
@@ -407,16 +403,17 @@ void Multigrid::Apply(const SystemMatrix& fine, const Real* r, Real* z, Real* sc
 }
 
 std::size_t Multigrid::MemoryBytes() const {
-  std::size_t bytes = Bytes(product_) + Bytes(denseVector_);
+  std::size_t bytes = BytesOf(product_) + BytesOf(denseVector_);
   bytes += 2 * sizeof(double) * static_cast<std::size_t>(dense_.size()) * dense_.size();
-  bytes +=
-      Bytes(extraProduct_.begin) + Bytes(extraProduct_.end) + Bytes(extraProduct_.column) + Bytes(extraProduct_.block);
-  for (const ExtraPart& part : parts_) bytes += Bytes(part.place) + Bytes(part.column) + Bytes(part.block);
+  bytes += BytesOf(extraProduct_.begin) + BytesOf(extraProduct_.end) + BytesOf(extraProduct_.column) +
+           BytesOf(extraProduct_.block);
+  for (const ExtraPart& part : parts_) bytes += BytesOf(part.place) + BytesOf(part.column) + BytesOf(part.block);
   for (const auto& owned : levels_) {
     const Level& level = *owned;
-    bytes += Bytes(level.p.first) + Bytes(level.p.column) + Bytes(level.p.weight) + level.restriction.MemoryBytes() +
-             Bytes(level.productFirst) + level.productSlots.Bytes() + level.slots.Bytes() + Bytes(level.right) +
-             Bytes(level.solution) + Bytes(level.scratch) + level.matrix.MemoryBytes();
+    bytes += BytesOf(level.p.first) + BytesOf(level.p.column) + BytesOf(level.p.weight) +
+             level.restriction.MemoryBytes() + BytesOf(level.productFirst) + level.productSlots.Bytes() +
+             level.slots.Bytes() + BytesOf(level.right) + BytesOf(level.solution) + BytesOf(level.scratch) +
+             level.matrix.MemoryBytes();
   }
   return bytes;
 }

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/memory.h"
 #include "fabric/real4.h"
 
 namespace percale::fabric {
@@ -36,11 +37,6 @@ void Invert(const std::array<Real, 9>& block, Real* inverse) {
   }
   for (int k = 0; k < 9; ++k) inverse[k] = 0;
   for (const int k : {0, 4, 8}) inverse[k] = static_cast<Real>(scale > 0 && std::isfinite(scale) ? 1 / scale : 1);
-}
-
-template <class T, class Allocator>
-std::size_t Bytes(const std::vector<T, Allocator>& array) {
-  return array.capacity() * sizeof(T);
 }
 
 template <class Array>
@@ -348,9 +344,9 @@ void SystemMatrix::ToDense(double* dense) const {
 }
 
 std::size_t SystemMatrix::MemoryBytes() const {
-  return pattern_.MemoryBytes() + constant_.MemoryBytes() + Bytes(diagonal_) + Bytes(pinned_) + Bytes(cleared_) +
-         Bytes(blocks_) + Bytes(inverse_) + Bytes(extra_.begin) + Bytes(extra_.end) + Bytes(extra_.column) +
-         Bytes(extra_.block) + Bytes(extraFirst_) + Bytes(extraOrder_);
+  return pattern_.MemoryBytes() + constant_.MemoryBytes() + BytesOf(diagonal_) + BytesOf(pinned_) + BytesOf(cleared_) +
+         BytesOf(blocks_) + BytesOf(inverse_) + BytesOf(extra_.begin) + BytesOf(extra_.end) + BytesOf(extra_.column) +
+         BytesOf(extra_.block) + BytesOf(extraFirst_) + BytesOf(extraOrder_);
 }
 
 }  // namespace percale::fabric
