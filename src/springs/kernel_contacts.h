@@ -141,7 +141,8 @@ inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, i
   }
   for (int m = kFloatLanes; m < count; m += kFloatLanes) gather(m);
   std::uint64_t near[kMost], todo = 0;
-  for (const float within : {reach.slight, reach.far}) {
+  const float distances[2] = {reach.slight, reach.far};
+  for (const float within : distances) {
     unsigned deep = 0;
     todo = 0;
     for (int m = 0; m < count; ++m) {

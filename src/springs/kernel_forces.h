@@ -32,8 +32,8 @@ inline void PutPulls(const IntegrateArgs& a, std::int64_t p, const Steps& step, 
   for (int k = 0; k < kKinds; ++k) {
     const Pack3 d = x - Load3(a.x, p + step[k]);
     const Pack length = kQuickRoots ? roots[k] : Sqrt(SquaredLength(d)), rest = Load(a.rest[k] + p);
-    // A spring that does not exist does not, and neither does one whose ends coincide: it has no direction. Other
-    // lengths are roots of numbers above 4e-324, and so above 1e-180 of any rest length.
+    // A spring that does not exist pulls nothing, and neither does one whose ends coincide: it has no direction.
+    // Other lengths are roots of numbers above 4e-324, and so above 1e-180 of any rest length.
     const Mask pulling = length * All(1e180) > rest;
     pulls.Put(k, at, d * Where(pulling, stiffness[k] * (length - rest) / length));
   }
@@ -68,8 +68,8 @@ inline Mask IsOutside(const Pack3& x, double bound) {
 /// p - 2 n are complete, and these move. Forces read positions only, and the new ones go where the previous ones
 /// were.
 ///
-/// In the first stage the divider is busy, in the second the rest of the processor: apart, both need few registers.
-/// Sums are read at other places than they were written at, which takes long until they have reached the cache.
+/// Of a run, first all pulls are put and then all sums are made: apart, both need few registers, and pulls are read a
+/// point or two beside where they were written, which takes long until they have reached the cache.
 std::int64_t Integrate(const IntegrateArgs& a) {
   const int n = a.numWidth;
   const std::int64_t begin = std::int64_t{a.rowBegin} * n, end = std::int64_t{a.rowEnd} * n;
