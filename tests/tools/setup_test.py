@@ -208,7 +208,8 @@ class Test(InCopy):
         self.stand_in("cmake", """echo "cmake $*" >>"$CALLS"
 mkdir -p "build/$2" && touch "build/$2/build.ninja"
 echo "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" >"build/$2/CMakeCache.txt" """)
-        self.stand_in("ninja", """echo "ninja $*" >>"$CALLS" """)
+        self.stand_in("ninja", """echo "ninja $*" >>"$CALLS"; mkdir -p "$2/bin"
+printf '#!/bin/bash\\n[ ! -e "$STATE/dead" ]\\n' >"$2/bin/percale"; chmod +x "$2/bin/percale" """)
         self.stand_in("ctest", """echo "ctest $*" >>"$CALLS"
 case "$2" in */"$(cat "$STATE/fails")") echo "1 tests failed"; exit 8 ;; esac; echo "100% tests passed" """)
         self.write("fails", "none\n")
@@ -221,13 +222,20 @@ case "$2" in */"$(cat "$STATE/fails")") echo "1 tests failed"; exit 8 ;; esac; e
         code, calls, _, err = self.stages()
         self.assertEqual(code, 0, err)
         self.assertEqual([os.path.basename(call.split(" --output")[0]) for call in calls], ["dev", "asan", "tsan"])
-        self.assertEqual([line.split()[2] for line in err.splitlines()[-3:]], ["passed"] * 3)
+        self.assertEqual([line.split()[1:3] for line in err.splitlines()[-4:]],
+                         [[stage, "passed"] for stage in ["dev", "asan", "tsan", "release"]])
+
+    def test_program_that_does_not_start(self):
+        self.write("dead", "")
+        code, _, _, err = self.stages()
+        self.assertEqual(code, 1)
+        self.assertEqual(err.splitlines()[-1].split()[1:3], ["release", "FAILED"])
 
     def test_one_failure_fails_all_and_stops_nothing(self):
         self.write("fails", "asan\n")
         code, calls, _, err = self.stages()
         self.assertEqual((code, len(calls)), (1, 3))
-        self.assertEqual([line.split()[2] for line in err.splitlines()[-3:]], ["passed", "FAILED", "passed"])
+        self.assertEqual([line.split()[2] for line in err.splitlines()[-4:]], ["passed", "FAILED", "passed", "passed"])
 
     def test_usage(self):
         code, out, _, calls = self.run_script("--help", script="test")
