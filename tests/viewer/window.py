@@ -208,12 +208,13 @@ class Viewer:
         return self.wait("state", self.events.index(done))
 
     def settle(self):
-        """Waits until every command sent so far has been carried out."""
+        """Waits until every command sent so far has been carried out, and the state after it is told."""
         def probe():
             self.update()
             sent = max((event.get("command", 0) for event in self.events if event["event"] != "done"), default=0)
             done = max((event["command"] for event in self.events if event["event"] == "done"), default=0)
-            return done >= sent
+            newest = next((event["event"] for event in reversed(self.events) if event["event"] in ("done", "state")), None)
+            return done >= sent and newest != "done"
         wait_for("the simulation", probe)
 
     def box(self, name):
