@@ -38,7 +38,7 @@ class Sink {
     const int length = std::snprintf(text, sizeof text, "%.*g", digits, number);
     for (int i = 0; i < length; ++i) {
       const char c = text[i];
-      if (c == '+' || c == '-' || c == 'e' || (c >= '0' && c <= '9')) continue;
+      if (c == '+' || c == '-' || c == 'e' || IsDigit(c)) continue;
       text[i] = '.';  // another decimal mark, perhaps of several bytes
       int end = i + 1;
       while (end < length && (static_cast<unsigned char>(text[end]) & 0x80) != 0) ++end;

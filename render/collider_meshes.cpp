@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/index.h"
 #include "mesh/topology.h"
 #include "render/scene_view.h"
 
@@ -116,12 +117,11 @@ DrawMesh MakeBoxMesh(const Vec3& size) {
 
 /// Smooth where its faces meet at an obtuse angle, with edges elsewhere: every triangle has corners of its own.
 DrawMesh MakeFacetedMesh(const RestMesh& rest, std::span<const Vec3> x) {
-  const auto z = [](std::int32_t i) { return static_cast<std::size_t>(i); };
   const Topology topology = BuildTopology(x.size(), rest.triangles);
   std::vector<Vec3> faces;  // as long as twice the area: the weight
   for (const Triangle& t : rest.triangles) {
-    const Vec3& a = x[z(t.a)];
-    faces.push_back(Cross(x[z(t.b)] - a, x[z(t.c)] - a));
+    const Vec3& a = x[Index(t.a)];
+    faces.push_back(Cross(x[Index(t.b)] - a, x[Index(t.c)] - a));
   }
   DrawMesh mesh;
   std::vector<Vec2> uv;
@@ -130,12 +130,12 @@ DrawMesh MakeFacetedMesh(const RestMesh& rest, std::span<const Vec3> x) {
     const Vec3 own = UnitOr(faces[t], {0, 1, 0});
     for (const std::int32_t v : {rest.triangles[t].a, rest.triangles[t].b, rest.triangles[t].c}) {
       Vec3 sum;
-      for (std::int32_t c = topology.cornerBegin[z(v)]; c < topology.cornerBegin[z(v) + 1]; ++c) {
-        const Vec3& other = faces[z(topology.corners[z(c)] / 3)];
+      for (std::int32_t c = topology.cornerBegin[Index(v)]; c < topology.cornerBegin[Index(v) + 1]; ++c) {
+        const Vec3& other = faces[Index(topology.corners[Index(c)] / 3)];
         if (Dot(own, other) >= kCosSharp * Length(other)) sum += other;
       }
-      uv.push_back(rest.uv[z(v)]);
-      mesh.triangles.push_back(AddVertex(mesh, x[z(v)], UnitOr(sum, own), {}, uv.back()));
+      uv.push_back(rest.uv[Index(v)]);
+      mesh.triangles.push_back(AddVertex(mesh, x[Index(v)], UnitOr(sum, own), {}, uv.back()));
     }
     const auto first = static_cast<std::int32_t>(3 * t);
     triangles.push_back({first, first + 1, first + 2});

@@ -68,7 +68,7 @@ CaseResult VerifyDrape(const Effort& effort) {
   ClothSettings cloth;
   SetFabric(cloth, Fabric::Cotton);
   scene.cloths.push_back(cloth);
-  scene.simulation.gravity = {0, -9.81, 0};
+  scene.simulation.gravity = {0, -kGravity, 0};
   scene.simulation.newtonIterations = 8;
   scene.simulation.linearIterations = 40;
   scene.simulation.tolerance = 1e-4;

@@ -29,7 +29,7 @@ Diagnostic Note(const fs::path& file, std::string message) {
 }
 
 bool AllDigits(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return !text.empty() && std::all_of(text.begin(), text.end(), IsDigit);
 }
 
 /// "pinned2" of "pinned2-12"; the text itself where there is no number.

@@ -10,6 +10,7 @@
 
 #include "collide/contact_mesh.h"
 #include "core/index.h"
+#include "core/memory.h"
 
 namespace percale {
 namespace {
@@ -220,9 +221,8 @@ ContactMesh Clustered(ContactMesh mesh) {
 }
 
 std::size_t Clusters::MemoryBytes() const {
-  const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  return bytes(body) + bytes(hasOnlyTriangles) + bytes(vertexFirst) + bytes(vertices) + bytes(ownVertices) +
-         bytes(edgeFirst) + bytes(triangleFirst);
+  return BytesOf(body) + BytesOf(hasOnlyTriangles) + BytesOf(vertexFirst) + BytesOf(vertices) + BytesOf(ownVertices) +
+         BytesOf(edgeFirst) + BytesOf(triangleFirst);
 }
 
 }  // namespace percale

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "core/memory.h"
 #include "percale/vec3.h"
 
 namespace percale {
@@ -441,9 +442,9 @@ bool FlatRegions::AreApart(std::int32_t pair, std::int32_t a, std::int32_t b, st
 }
 
 std::size_t FlatRegions::MemoryBytes() const {
-  const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  return bytes(inverse) + bytes(inverseFirst) + bytes(greatestSlope) + bytes(first) + bytes(other) + bytes(altitude) +
-         bytes(regionFirst) + bytes(region) + bytes(aroundFirst) + bytes(around) + bytes(aroundAltitude);
+  return BytesOf(inverse) + BytesOf(inverseFirst) + BytesOf(greatestSlope) + BytesOf(first) + BytesOf(other) +
+         BytesOf(altitude) + BytesOf(regionFirst) + BytesOf(region) + BytesOf(aroundFirst) + BytesOf(around) +
+         BytesOf(aroundAltitude);
 }
 
 FlatRegions MakeFlatRegions(const ContactMesh& mesh) {

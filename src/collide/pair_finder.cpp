@@ -14,6 +14,7 @@
 #include "collide/flat_regions.h"
 #include "core/aligned.h"
 #include "core/index.h"
+#include "core/memory.h"
 
 namespace percale {
 
@@ -439,13 +440,12 @@ std::span<const VertexQuad> PairFinder::edgeEdge() const {
 }
 
 std::size_t PairFinder::MemoryBytes() const {
-  const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
   const Impl& s = *impl_;
-  std::size_t sum = s.regions.MemoryBytes() + bytes(s.shapes) + bytes(s.areAllApart) + bytes(s.firstItemBlock) +
-                    bytes(s.rows) + bytes(s.itemBoxes) + bytes(s.touched) + bytes(s.isTouched) +
+  std::size_t sum = s.regions.MemoryBytes() + BytesOf(s.shapes) + BytesOf(s.areAllApart) + BytesOf(s.firstItemBlock) +
+                    BytesOf(s.rows) + BytesOf(s.itemBoxes) + BytesOf(s.touched) + BytesOf(s.isTouched) +
                     s.leafPairs.MemoryBytes() + s.vertexTriangleLists.MemoryBytes() + s.edgeEdgeLists.MemoryBytes() +
                     s.vertexTriangle.MemoryBytes() + s.edgeEdge.MemoryBytes();
-  for (const auto& level : s.levels) sum += bytes(level);
+  for (const auto& level : s.levels) sum += BytesOf(level);
   return sum;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "core/memory.h"
 
 namespace percale {
 namespace {
@@ -60,12 +61,11 @@ void SafeMove::Clear() {
 }
 
 std::size_t SafeMove::MemoryBytes() const {
-  const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  std::size_t sum = finder_.MemoryBytes() + bytes(limited_) + bytes(least_) + bytes(cut_) + bytes(changed_) +
-                    bytes(next_) + bytes(someEnd_);
+  std::size_t sum = finder_.MemoryBytes() + BytesOf(limited_) + BytesOf(least_) + BytesOf(cut_) + BytesOf(changed_) +
+                    BytesOf(next_) + BytesOf(someEnd_);
   for (const NearPairs* pairs : {&pairs_[0], &pairs_[1], &some_})
-    sum += bytes(pairs->vertex) + bytes(pairs->distance) + bytes(pairs->start);
-  for (const std::vector<double>& shares : shares_) sum += bytes(shares);
+    sum += BytesOf(pairs->vertex) + BytesOf(pairs->distance) + BytesOf(pairs->start);
+  for (const std::vector<double>& shares : shares_) sum += BytesOf(shares);
   return sum;
 }
 

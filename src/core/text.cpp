@@ -124,13 +124,12 @@ std::optional<double> ParseNumber(std::string_view text) {
 }
 
 std::optional<double> ParseTypedNumber(std::string_view text) {
-  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
   std::string number(text);
   if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.erase(0, 1);
   const std::size_t point = number.find('.');
   if (point != std::string::npos) {
-    const bool before = point > 0 && isDigit(number[point - 1]);
-    const bool behind = point + 1 < number.size() && isDigit(number[point + 1]);
+    const bool before = point > 0 && IsDigit(number[point - 1]);
+    const bool behind = point + 1 < number.size() && IsDigit(number[point + 1]);
     if (before && !behind) number.insert(point + 1, "0");
     if (behind && !before) number.insert(point, "0");
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "core/memory.h"
 
 namespace percale::fabric {
 namespace {
@@ -169,9 +170,8 @@ void Contacts::Fit(double k, Contact& c) {
 }
 
 std::size_t Contacts::MemoryBytes() const {
-  const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  return bytes(triangles_) + bytes(border_) + bytes(contacts_) + bytes(found_) + bytes(foundEnd_) + bytes(states_) +
-         bytes(terms_) + bytes(chunkSums_) + memory_.Bytes();
+  return BytesOf(triangles_) + BytesOf(border_) + BytesOf(contacts_) + BytesOf(found_) + BytesOf(foundEnd_) +
+         BytesOf(states_) + BytesOf(terms_) + BytesOf(chunkSums_) + memory_.Bytes();
 }
 
 void Contacts::ReadMemory(std::vector<Touch>& touches) const {

@@ -52,8 +52,9 @@ std::vector<Piece> FindPieces(const RestMesh& mesh, const Topology& topology, st
     piece.volume += Dot(a, Cross(b, c)) / 6;
   }
   for (const std::vector<std::int32_t>* edges : {&topology.boundaryEdges, &topology.nonManifoldEdges}) {
-    for (const std::int32_t e : *edges)
+    for (const std::int32_t e : *edges) {
       pieces[Index(topology.component[Index(topology.edges[Index(e)].a)])].open = true;
+    }
   }
   return pieces;
 }
