@@ -5,11 +5,6 @@
 #include "io/atomic_file.h"
 
 namespace percale::cli {
-namespace {
-
-constexpr int kDefaultFrames = 300;
-
-}  // namespace
 
 int Render(const Options& options) {
   auto opened = OpenSession(options);

@@ -15,6 +15,8 @@ namespace percale::cli {
 /// The World of the session: at its start, or where its checkpoint or picture stands.
 World MakeWorld(const Options& options, const Session& session);
 
+constexpr int kDefaultFrames = 300;  // of a simulation or a film whose options state none
+
 /// How long to run.
 struct RunPlan {
   int firstFrame = 0;  ///< The World stands there.

@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDefaultFrames = 300;
-
 /// The frames of a run on their way into a file.
 class Recorder {
  public:

@@ -24,20 +24,20 @@ constexpr double kFactors[] = {0.5, 1, 2};  // of --fine
 constexpr auto kPatience = std::chrono::milliseconds(50);
 
 /// One run of a case, and where its result goes.
-struct Run {
+struct CaseRun {
   const VerifyCase* of = nullptr;
   Effort effort;
   CaseResult* result = nullptr;
 };
 
 /// Makes room for all results; the runs point into the report.
-std::vector<Run> Plan(const Options& options, VerifyReport& report) {
+std::vector<CaseRun> Plan(const Options& options, VerifyReport& report) {
   for (const VerifyCase& each : VerifyCases()) {
     const auto& only = options.cases;
     if (only.empty() || std::find(only.begin(), only.end(), each.name) != only.end())
       report.cases.push_back({&each, {}, {}});
   }
-  std::vector<Run> runs;
+  std::vector<CaseRun> runs;
   for (FinishedCase& finished : report.cases) {
     const VerifyCase* of = finished.of;
     runs.push_back({of, {}, &finished.result});
@@ -58,7 +58,7 @@ std::vector<Run> Plan(const Options& options, VerifyReport& report) {
 }
 
 /// Runs all on several threads. False: interrupted before the last.
-bool RunAll(const std::vector<Run>& runs, int threads, Progress& progress) {
+bool RunAll(const std::vector<CaseRun>& runs, int threads, Progress& progress) {
   std::atomic<std::size_t> next{0}, done{0};
   std::atomic<bool> stop{false};
   std::mutex mutex;
@@ -95,7 +95,7 @@ int Verify(const Options& options) {
   const fs::path folder = TextPath(options.output.empty() ? "verify" : options.output);
   VerifyReport report;
   report.version = PERCALE_VERSION;
-  const std::vector<Run> runs = Plan(options, report);
+  const std::vector<CaseRun> runs = Plan(options, report);
   // A folder that cannot be written shows before the work, not after it.
   if (const int writable = MakeWritable(folder, "verify.html"); writable != kDone) return writable;
   const int threads = options.threads > 0 ? options.threads : int(std::max(1u, std::thread::hardware_concurrency()));
