@@ -53,6 +53,7 @@ class SomeFigures(ProgramTest):
         shader.write_text(shader.read_text() + "// changed\n")
         self.assertIn("1 of them drawn now", self.run_program(*only).stdout)
 
+    @unittest.skipIf(SANITIZED, "a minute's simulation, and pictures like those of other tests")
     def test_kept_shader_values_are_not_used(self):
         self.copy_root()
         only = ("figures", "-r", ".", "--size", "64x50", "--only", "48", "-o", "out")

@@ -55,6 +55,7 @@ class Verify(ProgramTest):
         self.assertIn("Error by elements along an edge", page)
         self.assertIn("Error by steps per second", page)
 
+    @unittest.skipIf(SANITIZED, "twenty seconds for a plot")
     def test_shapes_are_plotted(self):
         self.run_program("verify", "--only", "cantilever")
         self.assertIn("<svg", (self.folder / "verify/verify.html").read_text(encoding="utf-8"))

@@ -14,6 +14,8 @@ using namespace percale;
 TEST_CASE("the same bits for any number of threads, whatever the laws") {
   for (const BendingLaw bending : {BendingLaw::Quadratic, BendingLaw::Hinges}) {
     for (const MembraneLaw membrane : {MembraneLaw::StVenantKirchhoff, MembraneLaw::NeoHookean}) {
+      const bool simple = bending == BendingLaw::Quadratic, linear = membrane == MembraneLaw::StVenantKirchhoff;
+      if (test::kSanitized && simple != linear) continue;
       Scene scene;
       scene.simulation.engine = Engine::Fabric;
       scene.simulation.framesPerSecond = 60;
