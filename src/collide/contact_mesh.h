@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "collide/clusters.h"
+#include "core/memory.h"
 #include "percale/mesh.h"
 #include "percale/vec3.h"
 
@@ -33,8 +34,7 @@ struct ContactMesh {
   std::span<const Edge> Edges(int leaf) const { return LeafPart(edges, clusters.edgeFirst, leaf); }
   std::span<const Triangle> Triangles(int leaf) const { return LeafPart(triangles, clusters.triangleFirst, leaf); }
   std::size_t MemoryBytes() const {
-    const auto bytes = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-    return bytes(body) + bytes(place) + bytes(edges) + bytes(triangles) + clusters.MemoryBytes();
+    return BytesOf(body) + BytesOf(place) + BytesOf(edges) + BytesOf(triangles) + clusters.MemoryBytes();
   }
 };
 

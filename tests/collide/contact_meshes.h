@@ -16,13 +16,10 @@
 
 #include "collide/contact_mesh.h"
 #include "collide/pair_finder.h"
+#include "core/index.h"
 #include "math/splitmix64.h"
 
 namespace percale::test {
-
-inline std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// A mesh with a motion: what PairFinder::Find takes.
 struct MovingMesh {

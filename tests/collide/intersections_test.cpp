@@ -11,16 +11,13 @@
 #include <vector>
 
 #include "collide/predicates.h"
+#include "core/index.h"
 #include "math/splitmix64.h"
 #include "tests/sanitized.h"
 
 using namespace percale;
 
 namespace {
-
-std::size_t Z(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 struct Mesh {
   std::vector<Vec3> x;
@@ -93,7 +90,7 @@ std::vector<Intersection> BruteForce(const Mesh& mesh) {
       if (mesh.obstacles >= 0 && p >= mesh.obstacles && t.a >= mesh.obstacles) continue;
       const auto has = [&](std::int32_t v) { return v == t.a || v == t.b || v == t.c; };
       if (has(p) && has(q)) continue;
-      const auto at = [&](std::int32_t v) { return mesh.x[Z(v)]; };
+      const auto at = [&](std::int32_t v) { return mesh.x[Index(v)]; };
       bool meet = false;
       if (has(p) || has(q)) {
         const std::int32_t from = has(p) ? p : q;
@@ -325,7 +322,7 @@ TEST_CASE("the count does not depend on the order of vertices, triangles and cor
     Mesh other = mesh;
     for (std::size_t v = 0; v < mesh.x.size(); ++v) other.x[vertexAt[v]] = mesh.x[v];
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto place = [&](std::int32_t v) { return static_cast<std::int32_t>(vertexAt[Z(v)]); };
+      const auto place = [&](std::int32_t v) { return static_cast<std::int32_t>(vertexAt[Index(v)]); };
       const Triangle from = mesh.triangles[t];
       Triangle& to = other.triangles[triangleAt[t]] = {place(from.a), place(from.b), place(from.c)};
       for (std::uint64_t turns = random.Next() % 3; turns > 0; --turns) to = {to.b, to.c, to.a};

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/index.h"
 #include "fabric/fabric_model.h"
 #include "fabric/system_matrix.h"
 #include "math/splitmix64.h"
@@ -18,10 +19,6 @@ using namespace percale;
 using namespace percale::fabric;
 
 namespace {
-
-std::size_t Index(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Triangles at random places, some without area at rest and some collapsed to a point or a line.
 struct Triangles {

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/index.h"
 #include "math/splitmix64.h"
 #include "mesh/mesh_problems.h"
 #include "mesh/rest_mesh.h"
@@ -19,10 +20,6 @@ using namespace percale;
 namespace {
 
 using Ids = std::vector<std::int32_t>;
-
-std::size_t Z(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 ClothSettings Sheet(int numWidth, int numHeight) {
   ClothSettings cloth;
@@ -66,7 +63,7 @@ void CheckTopology(std::size_t vertexCount, const std::vector<Triangle>& triangl
       continue;
     }
     if (meeting.size() == 2) {
-      const bool first = Runs(triangles[Z(meeting[0])], a, b), second = Runs(triangles[Z(meeting[1])], a, b);
+      const bool first = Runs(triangles[Index(meeting[0])], a, b), second = Runs(triangles[Index(meeting[1])], a, b);
       if (first == second) inconsistent.push_back(std::int32_t(e));
       if (!first && second) std::swap(meeting[0], meeting[1]);
     }
@@ -77,7 +74,7 @@ void CheckTopology(std::size_t vertexCount, const std::vector<Triangle>& triangl
         CHECK(topology.edgeOpposite[e][i] == -1);
         continue;
       }
-      const Triangle& t = triangles[Z(meeting[i])];
+      const Triangle& t = triangles[Index(meeting[i])];
       CHECK(t.a + t.b + t.c == a + b + topology.edgeOpposite[e][i]);
     }
   }
@@ -87,14 +84,14 @@ void CheckTopology(std::size_t vertexCount, const std::vector<Triangle>& triangl
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const std::int32_t v[3] = {triangles[t].a, triangles[t].b, triangles[t].c};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Edge& edge = topology.edges[Z(topology.sideEdges[3 * t + k])];
+      const Edge& edge = topology.edges[Index(topology.sideEdges[3 * t + k])];
       CHECK(edge.a == std::min(v[k], v[(k + 1) % 3]));
       CHECK(edge.b == std::max(v[k], v[(k + 1) % 3]));
-      const auto first = topology.corners.begin() + topology.cornerBegin[Z(v[k])];
-      const auto last = topology.corners.begin() + topology.cornerBegin[Z(v[k]) + 1];
+      const auto first = topology.corners.begin() + topology.cornerBegin[Index(v[k])];
+      const auto last = topology.corners.begin() + topology.cornerBegin[Index(v[k]) + 1];
       CHECK(std::is_sorted(first, last));
       CHECK(std::binary_search(first, last, std::int32_t(3 * t + k)));
-      CHECK(topology.component[Z(v[k])] == topology.component[Z(v[0])]);
+      CHECK(topology.component[Index(v[k])] == topology.component[Index(v[0])]);
     }
   }
   CHECK(topology.corners.size() == 3 * triangles.size());
@@ -102,9 +99,9 @@ void CheckTopology(std::size_t vertexCount, const std::vector<Triangle>& triangl
 
 Ids Turn(RestMesh& mesh, const Ids& triangles) {
   for (const std::int32_t t : triangles) {
-    std::swap(mesh.triangles[Z(t)].b, mesh.triangles[Z(t)].c);
-    std::swap(mesh.material[3 * Z(t) + 1], mesh.material[3 * Z(t) + 2]);
-    for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Z(t) + k].y *= -1;
+    std::swap(mesh.triangles[Index(t)].b, mesh.triangles[Index(t)].c);
+    std::swap(mesh.material[3 * Index(t) + 1], mesh.material[3 * Index(t) + 2]);
+    for (std::size_t k = 0; k < 3; ++k) mesh.material[3 * Index(t) + k].y *= -1;
   }
   return triangles;
 }
@@ -372,7 +369,7 @@ TEST_CASE("The order along a Hilbert curve steps from cell to neighbouring cell"
   REQUIRE(order.size() == positions.size());
   CHECK(std::set<std::int32_t>(order.begin(), order.end()).size() == order.size());
   for (std::size_t i = 1; i < order.size(); ++i)
-    CHECK(Length(positions[Z(order[i])] - positions[Z(order[i - 1])]) == 1);
+    CHECK(Length(positions[Index(order[i])] - positions[Index(order[i - 1])]) == 1);
 
   CHECK(LocalityOrder({}).empty());
   CHECK(LocalityOrder(std::vector<Vec3>(3, Vec3{1, 2, 3})) == Ids{0, 1, 2});
@@ -394,7 +391,7 @@ TEST_CASE("Reordering changes the numbers and not the mesh") {
       std::array<double, 9> row{};
       const std::int32_t v[3] = {m.triangles[t].a, m.triangles[t].b, m.triangles[t].c};
       for (std::size_t k = 0; k < 3; ++k) {
-        row[k] = m.source[Z(v[k])];
+        row[k] = m.source[Index(v[k])];
         row[3 + 2 * k] = m.material[3 * t + k].x;
         row[4 + 2 * k] = m.material[3 * t + k].y;
       }
@@ -405,11 +402,11 @@ TEST_CASE("Reordering changes the numbers and not the mesh") {
   };
   CHECK(corners(mesh) == corners(before));
   for (std::size_t v = 0; v < order.size(); ++v) {
-    CHECK(mesh.positions[v] == before.positions[Z(order[v])]);
-    CHECK(mesh.uv[v] == before.uv[Z(order[v])]);
+    CHECK(mesh.positions[v] == before.positions[Index(order[v])]);
+    CHECK(mesh.uv[v] == before.uv[Index(order[v])]);
   }
   Ids rim;
-  for (const std::int32_t v : mesh.groups[0].vertices) rim.push_back(mesh.source[Z(v)]);
+  for (const std::int32_t v : mesh.groups[0].vertices) rim.push_back(mesh.source[Index(v)]);
   std::sort(rim.begin(), rim.end());
   CHECK(rim == Ids{91, 92, 100});
   CHECK(DescribeMeshProblems(FindMeshProblems(mesh)).empty());
