@@ -12,7 +12,7 @@ namespace percale::viewer {
 namespace {
 
 constexpr float kWidest = 620, kMargin = 10;  // [screen unit at scale 1]
-constexpr float kHighest = 0.4f;              // Of the window.
+constexpr float kPanelHeight = 0.4f;          // Of the window.
 
 constexpr double kNoteTime = 8;  // A note is shown for so long [s].
 
@@ -77,7 +77,7 @@ void DrawMessages(Session& session, UiState& state, float pictureWidth, float he
   const float width = std::min(pictureWidth - 2 * margin, kWidest * state.scale);
   if (width < 100 * state.scale) return;
   ImGui::SetNextWindowPos({margin, height - margin}, ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, kHighest * height});
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, kPanelHeight * height});
   constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
                                       ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;

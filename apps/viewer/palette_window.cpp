@@ -16,8 +16,8 @@
 namespace percale::viewer {
 namespace {
 
-constexpr float kPaletteWidth = 560;  // [screen unit at scale 1]
-constexpr float kHighest = 0.7f;      // Of the window.
+constexpr float kPaletteWidth = 560;    // [screen unit at scale 1]
+constexpr float kPaletteHeight = 0.7f;  // Of the window.
 constexpr int kMostRows = 14;
 constexpr int kAskEvery = 4;  // Pictures: the box takes the keyboard a picture or two after it was asked to.
 
@@ -107,7 +107,7 @@ void DrawPalette(Session& session, UiState& state, float windowWidth, float heig
   Log(session, state, matches);
 
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  const int most = std::max(3, static_cast<int>((kHighest * height - 2 * line) / line));
+  const int most = std::max(3, static_cast<int>((kPaletteHeight * height - 2 * line) / line));
   ImGui::BeginChild("list", {0, line * static_cast<float>(std::clamp(count, 1, std::min(kMostRows, most)))});
   if (count == 0) ImGui::TextDisabled("Nothing has that name.");
   ImGuiListClipper clipper;
