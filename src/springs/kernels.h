@@ -26,10 +26,14 @@ inline int GridPadding(int numWidth) {
 /// Forces and Verlet integration over some rows of one cloth.
 struct IntegrateArgs {
   int numWidth, numHeight;
-  int rowBegin, rowEnd;         ///< Rows whose points are moved.
-  const double* x[3];           ///< Positions, one array per axis, from the cloth's first point on [m].
-  double* previous[3];          ///< In: positions one step ago. Out: positions one step on. [m]
-  const double* rest[6];        ///< Rest length of the spring of each kind that a point creates, or kNoSpringRest [m].
+  int rowBegin, rowEnd;  ///< Rows whose points are moved.
+  const double* x;       ///< Positions along the first axis, from the cloth's first point on [m]; those along the
+                         ///< second and third are `stride` and 2 `stride` numbers behind.
+  double* previous;      ///< Likewise. In: positions one step ago. Out: positions one step on. [m]
+  std::int64_t stride;
+  const double* rest;  ///< Rest lengths of the springs of the first kind, by the point that creates them, or
+                       ///< kNoSpringRest [m]; those of the other kinds follow `restStride` numbers apart.
+  std::int64_t restStride;
   double stiffness[6];          ///< Of each kind [N/m]; 0 for kinds that are not enabled.
   double weight[3];             ///< Force on every point: mass times accelerations [N].
   const double* extraForce[3];  ///< More force, one per point [N]; null: none.
@@ -149,14 +153,11 @@ struct Kernels {
   std::int64_t (*collidePlane)(const ColliderArgs&);
 };
 
-/// `integrate` keeps sums of forces for this many points, six numbers each.
-inline int ForceRingSize(int numWidth) {
-  return RoundUpToPad(numWidth) + kGridPad;
-}
+/// `integrate` keeps sums of forces for this many points, six numbers each: a power of two that holds a row and a
+/// block.
+int ForceRingSize(int numWidth);
 /// Doubles of scratch that `integrate` needs for a cloth of that width; a multiple of kGridPad.
-inline int IntegrateScratch(int numWidth) {
-  return 6 * (ForceRingSize(numWidth) + kGridPad);
-}
+int IntegrateScratch(int numWidth);
 
 /// All that the processor can run, the plain ones first and the fastest last.
 std::vector<const Kernels*> RunnableKernels();

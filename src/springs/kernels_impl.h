@@ -17,6 +17,13 @@
 namespace percale::springs::PERCALE_KERNELS {
 namespace {
 
+/// On lambdas of an inner loop: what they capture stays in registers.
+#if defined(_MSC_VER)
+#define PERCALE_INLINE [[msvc::forceinline]]
+#else
+#define PERCALE_INLINE __attribute__((always_inline))
+#endif
+
 #if defined(_MSC_VER)
 inline double Sqrt(double v) {
   return ::sqrt(v);

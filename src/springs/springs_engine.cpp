@@ -41,11 +41,12 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
   }
 
   const std::size_t count = Index(pointCount_);
+  axisStride_ = GridPadding(widest) + RoundUpToPad(pointCount_) + kGridPad;
+  positionStore_.resize(Index(3 * axisStride_));
+  previousStore_.resize(positionStore_.size());
   for (int axis = 0; axis < 3; ++axis) {
-    positionStore_[axis].resize(count + Index(GridPadding(widest) + kGridPad));
-    previousStore_[axis].resize(positionStore_[axis].size());
-    positions_[axis] = positionStore_[axis].data() + GridPadding(widest);
-    previous_[axis] = previousStore_[axis].data() + GridPadding(widest);
+    positions_[axis] = positionStore_.data() + axis * axisStride_ + GridPadding(widest);
+    previous_[axis] = previousStore_.data() + axis * axisStride_ + GridPadding(widest);
   }
   fixed_.assign(count, 0);
   touched_.reserve(count);
@@ -74,9 +75,9 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
   pointCount_ += model.PointCount();
   sheet.kinds.assign(Index(model.PointCount() + MarkPadding(model.numWidth)), 0);
   double shortest = kInfinity;
+  sheet.rest.assign(Index(kSpringKinds * sheet.RestStride()), kNoSpringRest);
   for (int kind = 0; kind < kSpringKinds; ++kind) {
     const auto [di, dj] = kSpringSteps[kind];
-    sheet.rest[kind].assign(Index(kGridPad + model.PointCount() + kGridPad), kNoSpringRest);
     sheet.nearSquared[kind].assign(Index(model.PointCount() + kGridPad), kInfinity);
     for (int j = 0; j < model.numHeight; ++j) {
       for (int i = 0; i < model.numWidth; ++i) {
@@ -85,7 +86,7 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
         sheet.kinds[Index(p)] |= static_cast<std::uint8_t>(1u << kind);
         const double rest = Length(model.start[Index(p + dj * model.numWidth + di)] - model.start[Index(p)]);
         const double near = (1 - kNearShare) * kStretchLimit * rest;
-        sheet.rest[kind][Index(kGridPad + p)] = rest;
+        sheet.Rest(kind)[p] = rest;
         sheet.nearSquared[kind][Index(p)] = near * near;
         shortest = std::min(shortest, rest);
       }
@@ -246,15 +247,15 @@ bool SpringsEngine::ApplyForces(double time, std::span<const Gust> gusts) {
     args.rowEnd = rowEnd;
     const double weight[3] = {sheet.mass * gravity.x, sheet.mass * gravity.y, sheet.mass * gravity.z};
     for (int axis = 0; axis < 3; ++axis) {
-      args.x[axis] = positions_[axis] + sheet.firstPoint;
-      args.previous[axis] = previous_[axis] + sheet.firstPoint;
       args.weight[axis] = weight[axis];
       args.extraForce[axis] = windy ? windForce_[axis].data() + kGridPad + sheet.firstPoint : nullptr;
     }
-    for (int kind = 0; kind < kSpringKinds; ++kind) {
-      args.rest[kind] = sheet.Rest(kind);
-      args.stiffness[kind] = sheet.stiffness[kind];
-    }
+    args.x = positions_[0] + sheet.firstPoint;
+    args.previous = previous_[0] + sheet.firstPoint;
+    args.stride = axisStride_;
+    args.rest = sheet.Rest(0);
+    args.restStride = sheet.RestStride();
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.stiffness[kind] = sheet.stiffness[kind];
     args.keep = sheet.keep;
     args.forceToWay = sheet.mass > 0 ? dt_ * dt_ / sheet.mass : 0;
     args.bound = bound_;

@@ -33,8 +33,7 @@ namespace percale::springs {
 struct Sheet {
   int numWidth = 0, numHeight = 0;
   int firstPoint = 0;
-  AlignedVector<double>
-      rest[kSpringKinds];  ///< Per point that creates the spring [m]; kNoSpringRest where there is none.
+  AlignedVector<double> rest;  ///< Per kind and point that creates the spring [m]; kNoSpringRest where there is none.
   AlignedVector<double> nearSquared[kSpringKinds];  ///< Likewise the square of the length from which on a spring
                                                     ///< is near the strain limit [m^2]; or infinity.
   std::vector<std::uint8_t> kinds;      ///< Per point: a bit for each kind of spring that it creates; then zeros.
@@ -48,7 +47,9 @@ struct Sheet {
   int rowsPerChunk = 1;
   int firstChunk = 0;
   int PointCount() const { return numWidth * numHeight; }
-  const double* Rest(int kind) const { return rest[kind].data() + kGridPad; }  ///< Of the first point.
+  std::int64_t RestStride() const { return kGridPad + RoundUpToPad(PointCount()) + kGridPad; }  ///< From kind to kind.
+  const double* Rest(int kind) const { return rest.data() + kind * RestStride() + kGridPad; }   ///< Of the first point.
+  double* Rest(int kind) { return rest.data() + kind * RestStride() + kGridPad; }
 };
 
 class SpringsEngine {
@@ -129,9 +130,10 @@ class SpringsEngine {
   int chunkCount_ = 0;
   std::vector<Sheet> sheets_;
   std::vector<Vec3> start_;
-  // One array per axis, with padding around: positions, and positions one step ago. They change
-  // places in every step.
-  AlignedVector<double> positionStore_[3], previousStore_[3];
+  // One array per axis, with padding around, the axes one behind the other: positions, and positions one step ago.
+  // They change places in every step.
+  AlignedVector<double> positionStore_, previousStore_;
+  std::int64_t axisStride_ = 0;
   double* positions_[3] = {};
   double* previous_[3] = {};
   AlignedVector<double> windForce_[3];

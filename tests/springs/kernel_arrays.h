@@ -17,18 +17,19 @@ inline std::size_t At(std::int64_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// One array per axis, with room before and behind for what the kernels read there.
+/// One array per axis, with room before and behind for what the kernels read there, the axes one behind the other.
 struct Axes {
-  Axes(int numWidth, int count) : front(springs::GridPadding(numWidth)), size(count) {
-    for (auto& axis : store) axis.assign(At(front + count + springs::kGridPad), 0);
+  Axes(int numWidth, int count)
+      : front(springs::GridPadding(numWidth)), size(count), stride(front + count + springs::kGridPad) {
+    store.assign(At(3 * stride), 0);
   }
-  double* axis(int a) { return store[a].data() + front; }
-  const double* axis(int a) const { return store[a].data() + front; }
-  double& operator()(int a, std::int64_t point) { return store[a][At(front + point)]; }
-  double operator()(int a, std::int64_t point) const { return store[a][At(front + point)]; }
+  double* axis(int a) { return store.data() + a * stride + front; }
+  const double* axis(int a) const { return store.data() + a * stride + front; }
+  double& operator()(int a, std::int64_t point) { return axis(a)[point]; }
+  double operator()(int a, std::int64_t point) const { return axis(a)[point]; }
 
-  int front, size;
-  std::vector<double> store[3];
+  int front, size, stride;
+  std::vector<double> store;
 };
 
 /// Whether two numbers are the same; all that are none count as the same, and so do the zeros.
@@ -66,15 +67,15 @@ inline std::int64_t Step(int numWidth, int kind) {
   return std::int64_t{kSpringSteps[kind].dj} * numWidth + kSpringSteps[kind].di;
 }
 
-/// Rest lengths, one array per kind, with room before and behind.
+/// Rest lengths, one array per kind, with room before and behind, the kinds one behind the other.
 struct RestLengths {
-  explicit RestLengths(int count) {
-    for (auto& kind : store) kind.assign(At(2 * springs::kGridPad + count), springs::kNoSpringRest);
-  }
-  double* operator[](int kind) { return store[kind].data() + springs::kGridPad; }
-  const double* operator[](int kind) const { return store[kind].data() + springs::kGridPad; }
+  explicit RestLengths(int count)
+      : stride(2 * springs::kGridPad + count), store(At(kSpringKinds * stride), springs::kNoSpringRest) {}
+  double* operator[](int kind) { return store.data() + kind * stride + springs::kGridPad; }
+  const double* operator[](int kind) const { return store.data() + kind * stride + springs::kGridPad; }
 
-  std::vector<double> store[kSpringKinds];
+  int stride;
+  std::vector<double> store;
 };
 
 }  // namespace percale::test

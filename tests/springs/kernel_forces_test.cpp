@@ -36,7 +36,7 @@ struct Sheet {
         rest(count),
         scratch(At(IntegrateScratch(width) + 8)) {
     // Where a kernel reads what is not the sheet's, there may be another cloth.
-    for (auto& axis : x.store) std::fill(axis.begin(), axis.end(), 0.125);
+    std::fill(x.store.begin(), x.store.end(), 0.125);
   }
 
   IntegrateArgs Args(Axes& moved, int rowBegin, int rowEnd) {
@@ -45,16 +45,16 @@ struct Sheet {
     args.numHeight = numHeight;
     args.rowBegin = rowBegin;
     args.rowEnd = rowEnd;
+    args.x = x.axis(0);
+    args.previous = moved.axis(0);
+    args.stride = x.stride;
+    args.rest = rest[0];
+    args.restStride = rest.stride;
     for (int axis = 0; axis < 3; ++axis) {
-      args.x[axis] = x.axis(axis);
-      args.previous[axis] = moved.axis(axis);
       args.weight[axis] = weight[axis];
       args.extraForce[axis] = windy ? extra.axis(axis) : nullptr;
     }
-    for (int kind = 0; kind < kSpringKinds; ++kind) {
-      args.rest[kind] = rest[kind];
-      args.stiffness[kind] = stiffness[kind];
-    }
+    for (int kind = 0; kind < kSpringKinds; ++kind) args.stiffness[kind] = stiffness[kind];
     args.keep = keep;
     args.forceToWay = forceToWay;
     args.bound = bound;
@@ -219,7 +219,7 @@ TEST_CASE("one row alone is a sheet as well") {
 TEST_CASE("negative zeros are the same in all kernels") {
   for (int numWidth = 2; numWidth <= 18; ++numWidth) {
     Sheet s(numWidth, 4);
-    for (auto& axis : s.x.store) std::fill(axis.begin(), axis.end(), -0.0);
+    std::fill(s.x.store.begin(), s.x.store.end(), -0.0);
     std::fill(std::begin(s.weight), std::end(s.weight), -0.0);
     CAPTURE(numWidth);
     REQUIRE(StepFault(s, ReferenceStep(s), 0, 4) == "");
@@ -247,7 +247,7 @@ TEST_CASE("a single point out of bounds is told by the thread that moves it, and
   for (const int numWidth : {2, 3, 5, 8, 13}) {
     constexpr int kHeight = 5;
     Sheet s(numWidth, kHeight);
-    for (auto& axis : s.x.store) std::fill(axis.begin(), axis.end(), 0.0);
+    std::fill(s.x.store.begin(), s.x.store.end(), 0.0);
     s.windy = true;
     s.forceToWay = 1;  // so that a point goes where the wind blows it
     std::fill(std::begin(s.weight), std::end(s.weight), 0.0);
