@@ -19,6 +19,24 @@ inline FloatPack operator+(FloatPack a, FloatPack b) {
 inline FloatPack operator-(FloatPack a, FloatPack b) {
   return {_mm256_sub_ps(a.v, b.v)};
 }
+/// How far eight numbers are before `origin`.
+inline FloatPack FloatsBefore(double origin, const double* x) {
+  const __m256d o = _mm256_set1_pd(origin);
+  return {_mm256_set_m128(_mm256_cvtpd_ps(_mm256_sub_pd(o, _mm256_loadu_pd(x + 4))),
+                          _mm256_cvtpd_ps(_mm256_sub_pd(o, _mm256_loadu_pd(x))))};
+}
+struct FloatMask {
+  __m256 v;
+};
+inline FloatMask operator>(FloatPack a, FloatPack b) {
+  return {_mm256_cmp_ps(a.v, b.v, _CMP_GT_OQ)};
+}
+inline FloatMask operator|(FloatMask a, FloatMask b) {
+  return {_mm256_or_ps(a.v, b.v)};
+}
+inline unsigned Bits(FloatMask m) {
+  return static_cast<unsigned>(_mm256_movemask_ps(m.v));
+}
 /// Lanes by `turn` farther on, the first after the last.
 template <int turn>
 inline FloatPack Turn(FloatPack a) {
@@ -28,6 +46,13 @@ inline FloatPack Turn(FloatPack a) {
 }
 inline FloatPack Least(FloatPack a, FloatPack b) {
   return {_mm256_min_ps(a.v, b.v)};
+}
+inline FloatPack Greatest(FloatPack a, FloatPack b) {
+  return {_mm256_max_ps(a.v, b.v)};
+}
+/// Without the sign.
+inline FloatPack Size(FloatPack a) {
+  return {_mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v)};
 }
 /// Of vectors, one per lane.
 inline FloatPack SquaredLength(FloatPack x, FloatPack y, FloatPack z) {

@@ -1,11 +1,6 @@
 // Forces and integration. Included by kernels_impl.h inside the namespace of an instruction set,
 // like everything there; never elsewhere.
 
-/// Where something stands in a ring; its size is a power of two.
-inline std::int64_t Slot(std::int64_t at, std::int64_t size) {
-  return at & (size - 1);
-}
-
 /// What the springs that points create pull their other ends by, kind by kind; their creators they pull as much the
 /// other way, and the sums of that follow. A ring of blocks of points, ahead of which its last block stands once more.
 struct alignas(64) Pulls {

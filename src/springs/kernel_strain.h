@@ -1,26 +1,73 @@
 // Provot's limit on the length of springs. Included by kernels_impl.h inside the namespace of an
 // instruction set, like everything there; never elsewhere.
 
+/// Spreads eight bits to the lowest of eight bytes each.
+inline std::uint64_t BytePerBit(unsigned bits) {
+  const std::uint64_t apart = bits * std::uint64_t{0x0101010101010101} & 0x8040201008040201;
+  return (apart + 0x7f7f7f7f7f7f7f7f) >> 7 & 0x0101010101010101;
+}
+
+/// A row of points relative to another point, in float. Around it stands room for a block.
+struct RelativeRow {
+  float* axes;
+  std::int64_t stride;
+
+  FloatPack3 Get(std::int64_t i) const {
+    return {LoadFloats(axes + i), LoadFloats(axes + stride + i), LoadFloats(axes + 2 * stride + i)};
+  }
+  void Put(std::int64_t i, const FloatPack3& x) const {
+    StoreFloats(axes + i, x.x), StoreFloats(axes + stride + i, x.y), StoreFloats(axes + 2 * stride + i, x.z);
+  }
+};
+
+/// Springs are measured in float, eight at a time. Positions are read beside where they were put, which takes long
+/// until they have reached the cache: first those of the row are put.
 std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
-  const std::int64_t n = a.numWidth, begin = a.rowBegin * n, end = a.rowEnd * n;
-  const Steps step(n);
-  GridWalk walk(a.x, begin, step);
+  const std::int64_t n = a.numWidth, end = a.rowEnd * n, stride = MarkScratch(a.numWidth) / 9;
+  RelativeRow rows[3];  // this one, and those above it
+  for (int row = 0; row < 3; ++row) rows[row] = {a.scratch + 3 * row * stride + kFloatLanes, stride};
+  // Springs to rows that do not exist are not longer than anything.
+  const FloatPack nowhere = AllFloats(NAN);
+  for (std::int64_t i = 0; a.rowBegin < 2 && i < n + kFloatLanes; i += kFloatLanes) {
+    for (int row = 0; row < 2; ++row) rows[row].Put(i, {nowhere, nowhere, nowhere});
+  }
+  FloatPack farthest = AllFloats(0);
   std::uint64_t any = 0;
-  for (std::int64_t p = begin; p < end; p += kLanes) {
-    Pack3 d[kKinds];
-    walk.Next(a.x, p, step, d);
-    Mask near[kKinds];
-    for (int kind = 0; kind < kKinds; ++kind) near[kind] = RoughSquare(d[kind]) > Load(a.nearSquared[kind] + p);
-    std::uint64_t bytes = 0;
-    if (Bits(((near[0] | near[1]) | (near[2] | near[3])) | (near[4] | near[5])) != 0) any |= bytes = BytePerLane(near);
-    // What is beyond the last row belongs to others.
-    if (end - p >= kLanes) {
-      memcpy(a.nearKinds + p, &bytes, kLanes);
-    } else {
-      memcpy(a.nearKinds + p, &bytes, static_cast<std::size_t>(end - p));
+  for (std::int64_t j = a.rowBegin < 2 ? 0 : a.rowBegin - 2; j < a.rowEnd; ++j) {
+    const RelativeRow here = rows[2], up = rows[0], twoUp = rows[1];
+    rows[0] = here, rows[1] = up, rows[2] = twoUp;
+    for (std::int64_t i = 0, p = j * n; i < n; i += kFloatLanes, p += kFloatLanes) {
+      here.Put(i, {FloatsBefore(a.origin[0], a.x[0] + p), FloatsBefore(a.origin[1], a.x[1] + p),
+                   FloatsBefore(a.origin[2], a.x[2] + p)});
+    }
+    here.Put(n, {AllFloats(0), AllFloats(0), AllFloats(0)});
+    if (j < a.rowBegin) continue;
+
+    for (std::int64_t i = 0, p = j * n; i < n; i += kFloatLanes, p += kFloatLanes) {
+      const FloatPack3 x = here.Get(i);
+      const float* const nearSquared = a.nearSquared + i;
+      const auto isNear = [&](const FloatPack3& other, int kind) PERCALE_INLINE {
+        return SquaredDistance(x, other) > LoadFloats(nearSquared + kind * a.nearStride);
+      };
+      const FloatMask near[kKinds] = {isNear(here.Get(i - 1), kLeft),    isNear(up.Get(i), kUp),
+                                      isNear(up.Get(i - 1), kUpperLeft), isNear(up.Get(i + 1), kUpperRight),
+                                      isNear(here.Get(i - 2), kTwoLeft), isNear(twoUp.Get(i), kTwoUp)};
+      std::uint64_t marks = 0;
+      if (Bits(((near[0] | near[1]) | (near[2] | near[3])) | (near[4] | near[5])) != 0) {
+        for (int kind = 0; kind < kKinds; ++kind) marks |= BytePerBit(Bits(near[kind])) << kind;
+        any = 1;
+      }
+      farthest = Greatest(farthest, Greatest(Greatest(Size(x.x), Size(x.y)), Size(x.z)));
+      // What is beyond the row comes after it, and what is beyond the last row belongs to others.
+      if (end - p >= kFloatLanes) {
+        memcpy(a.nearKinds + p, &marks, kFloatLanes);
+      } else {
+        memcpy(a.nearKinds + p, &marks, static_cast<std::size_t>(end - p));
+      }
     }
   }
-  return any != 0 ? 1 : 0;
+  const bool farAway = AtMost(farthest, a.farthest) != (1u << kFloatLanes) - 1;
+  return (any != 0 ? kSomeAreNear : std::int64_t{0}) | (farAway ? kSomeAreFarAway : std::int64_t{0});
 }
 
 GreatestStretchResult GreatestStretch(const GreatestStretchArgs& a) {

@@ -14,6 +14,9 @@ int ForceRingSize(int numWidth) {
 int IntegrateScratch(int numWidth) {
   return 6 * (ForceRingSize(numWidth) + kGridPad);
 }
+int MarkScratch(int numWidth) {
+  return 9 * (RoundUpToPad(numWidth) + 3 * kGridPad);
+}
 
 const Kernels& BaselineKernels() {
   return baseline::kKernels;

@@ -43,14 +43,25 @@ struct IntegrateArgs {
   double* scratch;              ///< IntegrateScratch(numWidth) doubles; best at a multiple of 64 bytes.
 };
 
-/// Which springs are so long that the strain limit has to look at them.
+/// Which springs are so long that the strain limit has to look at them. Some that are not may be told, too.
 struct LongSpringsArgs {
   int numWidth;
   int rowBegin, rowEnd;
   const double* x[3];
-  const double* nearSquared[6];  ///< Per point and kind: square of the length from which on a spring counts as near
-                                 ///< its limit [m^2]; infinite where there is no spring.
+  double origin[3];          ///< Positions are taken relative to it, in float [m]:
+  float farthest;            ///< springs are told of points up to so far from it along each axis [m].
+  const float* nearSquared;  ///< Per column of points: square of the length from which on its springs of the first
+                             ///< kind count as near their limit, less what positions in float are off [m^2]; infinite
+                             ///< where there are none, and for kGridPad columns more. Of the other kinds: `nearStride`
+                             ///< numbers apart.
+  std::int64_t nearStride;
   std::uint8_t* nearKinds;  ///< Out: per point one bit per kind of spring, set where it is near its limit or longer.
+  float* scratch;           ///< MarkScratch(numWidth) floats.
+};
+/// What it returns.
+enum : std::int64_t {
+  kSomeAreNear = 1,     ///< Some springs are near their limit.
+  kSomeAreFarAway = 2,  ///< Some points are too far away: any spring may be near its limit.
 };
 
 struct GreatestStretchArgs {
@@ -137,7 +148,7 @@ struct Kernels {
   const char* name;
   /// Returns 0 when every point stays within bounds.
   std::int64_t (*integrate)(const IntegrateArgs&);
-  /// Returns 0 when no spring is near its limit.
+  /// Returns 0 when no spring is near its limit, or which of the above holds.
   std::int64_t (*markLongSprings)(const LongSpringsArgs&);
   /// Returns the number of springs shortened.
   std::int64_t (*limitStrain)(const StrainArgs&);
@@ -158,6 +169,9 @@ struct Kernels {
 int ForceRingSize(int numWidth);
 /// Doubles of scratch that `integrate` needs for a cloth of that width; a multiple of kGridPad.
 int IntegrateScratch(int numWidth);
+
+/// Floats of scratch that `markLongSprings` needs for a cloth of that width: for three rows.
+int MarkScratch(int numWidth);
 
 /// All that the processor can run, the plain ones first and the fastest last.
 std::vector<const Kernels*> RunnableKernels();

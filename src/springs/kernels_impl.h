@@ -70,33 +70,10 @@ struct Steps {
   std::int64_t operator[](int kind) const { return of[kind]; }
 };
 
-/// Walks along the line of points, a block after the other. Where every load beside a block straddles two cache
-/// lines, other ends of springs that are neighbours of each other are loaded once and shifted.
-struct GridWalk {
-  static constexpr bool kShifts = kLanes == 8;
-  Pack3 here, upperRight;  // the last block, and the other ends of its springs to the upper right
-
-  /// `first` is where the first block begins.
-  GridWalk(const double* const x[3], std::int64_t first, const Steps& step)
-      : here(Load3(x, first - kLanes)), upperRight(Load3(x, first - kLanes + step[kUpperRight])) {}
-
-  /// Goes on to the block that begins at `at`. From the other ends of its springs to each of its points:
-  void Next(const double* const x[3], std::int64_t at, const Steps& step, Pack3 d[kKinds]) {
-    const Pack3 last = here, lastUpperRight = upperRight;
-    here = Load3(x, at);
-    if constexpr (kShifts) {
-      upperRight = Load3(x, at + step[kUpperRight]);
-      d[kLeft] = here - Shift<kLanes - 1>(last, here);
-      d[kUp] = here - Shift<kLanes - 1>(lastUpperRight, upperRight);
-      d[kUpperLeft] = here - Shift<kLanes - 2>(lastUpperRight, upperRight);
-      d[kUpperRight] = here - upperRight;
-      d[kTwoLeft] = here - Shift<kLanes - 2>(last, here);
-      d[kTwoUp] = here - Load3(x, at + step[kTwoUp]);
-    } else {
-      for (int kind = 0; kind < kKinds; ++kind) d[kind] = here - Load3(x, at + step[kind]);
-    }
-  }
-};
+/// Where something stands in a ring; its size is a power of two.
+inline std::int64_t Slot(std::int64_t at, std::int64_t size) {
+  return at & (size - 1);
+}
 
 #include "springs/kernel_colliders.h"
 #include "springs/kernel_contacts.h"

@@ -50,16 +50,8 @@ inline Pack3 operator-(const Pack3& a, const Pack3& b) {
 inline Pack3 operator*(const Pack3& a, Pack b) {
   return {a.x * b, a.y * b, a.z * b};
 }
-template <int first>
-inline Pack3 Shift(const Pack3& a, const Pack3& b) {
-  return {Shift<first>(a.x, b.x), Shift<first>(a.y, b.y), Shift<first>(a.z, b.z)};
-}
 inline Pack SquaredLength(const Pack3& a) {
   return a.x * a.x + a.y * a.y + a.z * a.z;
-}
-/// The same to within rounding, in fewer steps.
-inline Pack RoughSquare(const Pack3& a) {
-  return MaybeFused(a.x, a.x, MaybeFused(a.y, a.y, a.z * a.z));
 }
 inline Pack3 Select(Mask m, const Pack3& a, const Pack3& b) {
   return {Select(m, a.x, b.x), Select(m, a.y, b.y), Select(m, a.z, b.z)};

@@ -66,14 +66,6 @@ inline Mask Outside(Pack a, double bound) {
 inline Mask FirstLanes(int count) {
   return {_mm256_cmp_pd(_mm256_setr_pd(0, 1, 2, 3), _mm256_set1_pd(count), _CMP_LT_OQ)};
 }
-/// Four lanes of the eight of `a` and `b`, from lane `first` on.
-template <int first>
-inline Pack Shift(Pack a, Pack b) {
-  const __m256d middle = _mm256_permute2f128_pd(a.v, b.v, 0x21);
-  if constexpr (first == 1) return {_mm256_shuffle_pd(a.v, middle, 0b0101)};
-  if constexpr (first == 3) return {_mm256_shuffle_pd(middle, b.v, 0b0101)};
-  return {middle};
-}
 /// One bit per lane.
 inline unsigned Bits(Mask m) {
   return static_cast<unsigned>(_mm256_movemask_pd(m.v));
@@ -125,11 +117,6 @@ inline Pack Gather(const double* from, const std::int32_t* index) {
 }
 inline Pack MaybeFused(Pack a, Pack b, Pack c) {
   return {_mm256_fmadd_pd(a.v, b.v, c.v)};
-}
-inline std::uint64_t BytePerLane(const Mask masks[6]) {
-  std::uint64_t bytes = 0;
-  for (int m = 0; m < 6; ++m) bytes |= std::uint64_t{Bits(masks[m]) * 0x00204081 & 0x01010101} << m;
-  return bytes;
 }
 inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
   std::uint64_t zeros = 0;

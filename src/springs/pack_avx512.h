@@ -67,11 +67,6 @@ inline Mask Outside(Pack a, double bound) {
 inline Mask FirstLanes(int count) {
   return {static_cast<__mmask8>((1u << count) - 1)};
 }
-/// kLanes lanes of those of `a` and `b`, from lane `first` on.
-template <int first>
-inline Pack Shift(Pack a, Pack b) {
-  return {_mm512_castsi512_pd(_mm512_alignr_epi64(_mm512_castpd_si512(b.v), _mm512_castpd_si512(a.v), first))};
-}
 /// One bit per lane.
 inline unsigned Bits(Mask m) {
   return m.v;
@@ -128,13 +123,6 @@ inline Pack Gather(const double* from, const std::int32_t* index) {
 /// a b + c, rounded once or twice: for tests that leave room for either.
 inline Pack MaybeFused(Pack a, Pack b, Pack c) {
   return {_mm512_fmadd_pd(a.v, b.v, c.v)};
-}
-/// One byte per lane, with a bit for each of six masks.
-inline std::uint64_t BytePerLane(const Mask masks[6]) {
-  constexpr std::uint64_t kBytes = 0x0101010101010101;
-  std::uint64_t bytes = 0;
-  for (int m = 0; m < 6; ++m) bytes |= _pdep_u64(masks[m].v, kBytes << m);
-  return bytes;
 }
 /// A bit for each of 64 bytes that is not zero.
 inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {

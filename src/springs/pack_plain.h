@@ -68,10 +68,6 @@ inline Mask Outside(Pack a, double bound) {
 inline Mask FirstLanes(int count) {
   return {{0 < count, 1 < count, 2 < count, 3 < count}};
 }
-template <int first>
-inline Pack Shift(Pack a, Pack b) {
-  return Each([&](int i) { return i + first < 4 ? a.v[(i + first) % 4] : b.v[(i + first) % 4]; });
-}
 inline unsigned Bits(Mask m) {
   return static_cast<unsigned>(m.v[0]) | static_cast<unsigned>(m.v[1]) << 1 | static_cast<unsigned>(m.v[2]) << 2 |
          static_cast<unsigned>(m.v[3]) << 3;
@@ -130,11 +126,6 @@ inline Pack Gather(const double* from, const std::int32_t* index) {
 inline Pack MaybeFused(Pack a, Pack b, Pack c) {
   return a * b + c;
 }
-inline std::uint64_t BytePerLane(const Mask masks[6]) {
-  std::uint64_t bytes = 0;
-  for (int m = 0; m < 6; ++m) bytes |= std::uint64_t{Bits(masks[m]) * 0x00204081 & 0x01010101} << m;
-  return bytes;
-}
 inline std::uint64_t NonzeroBytes(const std::uint8_t* p) {
   std::uint64_t bits = 0;
   for (int i = 0; i < 64; ++i) bits |= std::uint64_t{p[i] != 0} << i;
@@ -167,12 +158,38 @@ inline FloatPack operator+(FloatPack a, FloatPack b) {
 inline FloatPack operator-(FloatPack a, FloatPack b) {
   return EachFloat([&](int i) { return a.v[i] - b.v[i]; });
 }
+inline FloatPack FloatsBefore(double origin, const double* x) {
+  return EachFloat([&](int i) { return static_cast<float>(origin - x[i]); });
+}
+struct FloatMask {
+  bool v[8];
+};
+inline FloatMask operator>(FloatPack a, FloatPack b) {
+  FloatMask m;
+  for (int i = 0; i < 8; ++i) m.v[i] = a.v[i] > b.v[i];
+  return m;
+}
+inline FloatMask operator|(FloatMask a, FloatMask b) {
+  for (int i = 0; i < 8; ++i) a.v[i] = a.v[i] || b.v[i];
+  return a;
+}
+inline unsigned Bits(FloatMask m) {
+  unsigned bits = 0;
+  for (int i = 0; i < 8; ++i) bits |= (m.v[i] ? 1u : 0u) << i;
+  return bits;
+}
 template <int turn>
 inline FloatPack Turn(FloatPack a) {
   return EachFloat([&](int i) { return a.v[(i + turn) % 8]; });
 }
 inline FloatPack Least(FloatPack a, FloatPack b) {
   return EachFloat([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
+}
+inline FloatPack Greatest(FloatPack a, FloatPack b) {
+  return EachFloat([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
+}
+inline FloatPack Size(FloatPack a) {
+  return EachFloat([&](int i) { return a.v[i] < 0 ? -a.v[i] : a.v[i]; });
 }
 inline FloatPack SquaredLength(FloatPack x, FloatPack y, FloatPack z) {
   return EachFloat([&](int i) { return x.v[i] * x.v[i] + y.v[i] * y.v[i] + z.v[i] * z.v[i]; });

@@ -17,9 +17,19 @@ namespace {
 constexpr double kStretchLimit = 1.1;  // of the rest length; Provot 1995, section 5
 constexpr double kNearShare = 0.01;    // a spring this close to the limit is looked at; tuned on pinned2
 constexpr double kBendingShare = 0.2;  // bending springs have this share of ks
+constexpr double kFarAway = 4;         // of a cloth's size: a point farther from its first is not measured in float
 constexpr double kBound = 1e6;         // m; a cloth this far out has diverged
 constexpr int kPointsPerChunk = 2560;  // of all loops; below it a second thread does not pay
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Square of the length from which on a spring is looked at, when measured in float from positions relative to another
+/// point, `farthest` from it at most along each axis: each is off by 2^-24 of that, and the length by as much of itself
+/// and more.
+float NearSquared(double rest, double farthest) {
+  const double near = (1 - kNearShare) * kStretchLimit * rest;
+  const double measured = std::max(0.0, near - 4 * 0x1p-24 * farthest);
+  return static_cast<float>(measured * measured * (1 - 1e-6));
+}
 
 /// Point p of arrays with one axis each.
 Vec3 Get(const double* const axes[3], int p) {
@@ -57,6 +67,8 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
   map_.Reserve(pointCount_);
   scratchPerChunk_ = IntegrateScratch(widest);
   integrateScratch_.assign(Index(chunkCount_) * Index(scratchPerChunk_), 0);
+  markScratchPerChunk_ = MarkScratch(widest);
+  markScratch_.assign(Index(chunkCount_) * Index(markScratchPerChunk_), 0);
   const int bucketChunks = pointCount_ / kPointsPerChunk + 2;
   bucketChunks_.reserve(Index(bucketChunks));
   bucketScratch_.resize(3 * (count + Index(kGridPad * bucketChunks)));
@@ -74,20 +86,22 @@ void SpringsEngine::AddSheet(const ClothModel& model) {
   firstPoint_.push_back(pointCount_);
   pointCount_ += model.PointCount();
   sheet.kinds.assign(Index(model.PointCount() + MarkPadding(model.numWidth)), 0);
-  double shortest = kInfinity;
+  double shortest = kInfinity, farthest = 0;
+  for (const Vec3& at : model.start) farthest = std::max(farthest, Length(at - model.start[0]));
+  sheet.farthest = static_cast<float>(kFarAway * farthest);
+  sheet.nearSquared.assign(Index(kSpringKinds * sheet.NearStride()), std::numeric_limits<float>::infinity());
   sheet.rest.assign(Index(kSpringKinds * sheet.RestStride()), kNoSpringRest);
   for (int kind = 0; kind < kSpringKinds; ++kind) {
     const auto [di, dj] = kSpringSteps[kind];
-    sheet.nearSquared[kind].assign(Index(model.PointCount() + kGridPad), kInfinity);
+    float* const nearSquared = sheet.nearSquared.data() + kind * sheet.NearStride();
     for (int j = 0; j < model.numHeight; ++j) {
       for (int i = 0; i < model.numWidth; ++i) {
         if (i + di < 0 || i + di >= model.numWidth || j + dj < 0) continue;
         const int p = j * model.numWidth + i;
         sheet.kinds[Index(p)] |= static_cast<std::uint8_t>(1u << kind);
         const double rest = Length(model.start[Index(p + dj * model.numWidth + di)] - model.start[Index(p)]);
-        const double near = (1 - kNearShare) * kStretchLimit * rest;
         sheet.Rest(kind)[p] = rest;
-        sheet.nearSquared[kind][Index(p)] = near * near;
+        nearSquared[i] = std::min(nearSquared[i], NearSquared(rest, sheet.farthest));
         shortest = std::min(shortest, rest);
       }
     }
@@ -460,17 +474,24 @@ void SpringsEngine::LimitStrain() {
     args.numWidth = sheet.numWidth;
     args.rowBegin = rowBegin;
     args.rowEnd = rowEnd;
-    for (int axis = 0; axis < 3; ++axis) args.x[axis] = positions_[axis] + sheet.firstPoint;
-    for (int kind = 0; kind < kSpringKinds; ++kind) args.nearSquared[kind] = sheet.nearSquared[kind].data();
+    for (int axis = 0; axis < 3; ++axis) {
+      args.x[axis] = positions_[axis] + sheet.firstPoint;
+      args.origin[axis] = args.x[axis][0];
+    }
+    args.farthest = sheet.farthest;
+    args.nearSquared = sheet.nearSquared.data();
+    args.nearStride = sheet.NearStride();
+    args.scratch = markScratch_.data() + Index(chunk) * Index(markScratchPerChunk_);
     args.nearKinds = sheet.nearKinds.data();
     chunkCounts_[Index(chunk)] = kernels_.markLongSprings(args);
   });
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     const int end = s + 1 < sheets_.size() ? sheets_[s + 1].firstChunk : chunkCount_;
-    std::int64_t nearSprings = 0;
-    for (int chunk = sheets_[s].firstChunk; chunk < end; ++chunk) nearSprings += chunkCounts_[Index(chunk)];
-    if (nearSprings == 0) continue;
+    std::int64_t found = 0;
+    for (int chunk = sheets_[s].firstChunk; chunk < end; ++chunk) found |= chunkCounts_[Index(chunk)];
+    if (found == 0) continue;
     Sheet& sheet = sheets_[s];
+    if ((found & kSomeAreFarAway) != 0) sheet.nearKinds = sheet.kinds;
     std::fill(sheet.moved.begin(), sheet.moved.end(), 0.0f);
     StrainArgs args{};
     args.numWidth = sheet.numWidth;

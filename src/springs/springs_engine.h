@@ -34,9 +34,11 @@ struct Sheet {
   int numWidth = 0, numHeight = 0;
   int firstPoint = 0;
   AlignedVector<double> rest;  ///< Per kind and point that creates the spring [m]; kNoSpringRest where there is none.
-  AlignedVector<double> nearSquared[kSpringKinds];  ///< Likewise the square of the length from which on a spring
-                                                    ///< is near the strain limit [m^2]; or infinity.
-  std::vector<std::uint8_t> kinds;      ///< Per point: a bit for each kind of spring that it creates; then zeros.
+  std::vector<float> nearSquared;   ///< Per kind and column, and infinity for kGridPad more: the least square of
+                                    ///< lengths, measured in float, from which on such springs are near the strain
+                                    ///< limit [m^2]; or infinity.
+  float farthest = 0;               ///< Points up to so far from the first along each axis are measured in float [m].
+  std::vector<std::uint8_t> kinds;  ///< Per point: a bit for each kind of spring that it creates; then zeros.
   std::vector<std::uint8_t> nearKinds;  ///< Per point: those that are near the strain limit; then zeros.
   std::vector<float> moved;             ///< Per point: how far the strain limit moved it [m].
   float moveBudget = 0;                 ///< How far a point may move before it concerns springs that were not near.
@@ -47,6 +49,7 @@ struct Sheet {
   int rowsPerChunk = 1;
   int firstChunk = 0;
   int PointCount() const { return numWidth * numHeight; }
+  std::int64_t NearStride() const { return numWidth + kGridPad; }                               ///< Likewise.
   std::int64_t RestStride() const { return kGridPad + RoundUpToPad(PointCount()) + kGridPad; }  ///< From kind to kind.
   const double* Rest(int kind) const { return rest.data() + kind * RestStride() + kGridPad; }   ///< Of the first point.
   double* Rest(int kind) { return rest.data() + kind * RestStride() + kGridPad; }
@@ -153,7 +156,9 @@ class SpringsEngine {
   BoxMap map_;
   int scratchPerChunk_ = 0;
   AlignedVector<double> integrateScratch_;  // per chunk of rows
-  std::vector<std::int64_t> chunkCounts_;   // per chunk of any loop
+  int markScratchPerChunk_ = 0;
+  AlignedVector<float> markScratch_;       // likewise
+  std::vector<std::int64_t> chunkCounts_;  // per chunk of any loop
   struct BucketChunk {
     std::int32_t bucketEnd, pointsBefore;
   };

@@ -29,7 +29,7 @@ struct Sheet {
       : numWidth(width), numHeight(height), count(width * height), x(width, count), rest(count) {
     fixed.assign(At(count), 0);
     kinds.assign(At(count + MarkPadding(numWidth)), 0);
-    for (auto& kind : nearSquared) kind.assign(At(count + kGridPad), std::numeric_limits<double>::infinity());
+    nearSquared.assign(At(kSpringKinds * NearStride()), std::numeric_limits<float>::infinity());
     for (int p = 0; p < count; ++p) {
       x(0, p) = p % width + 0.01 * random.NextUnit();
       x(1, p) = p / width + 0.01 * random.NextUnit();
@@ -41,11 +41,14 @@ struct Sheet {
         if (!Creates(width, p, kind)) continue;
         kinds[At(p)] = static_cast<std::uint8_t>(kinds[At(p)] | 1u << kind);
         rest[kind][At(p)] = std::sqrt(Squared(p, kind));
-        nearSquared[kind][At(p)] = std::pow(kNear * rest[kind][At(p)], 2);
+        float& near = nearSquared[At(kind * NearStride() + p % width)];
+        near = std::min(near, static_cast<float>(std::pow(kNear * rest[kind][At(p)], 2)));
         shortest = std::min(shortest, rest[kind][At(p)]);
       }
     }
   }
+
+  std::int64_t NearStride() const { return numWidth + kGridPad; }
 
   /// Of the length of a spring.
   double Squared(int p, int kind) const {
@@ -59,15 +62,24 @@ struct Sheet {
     args.numWidth = numWidth;
     args.rowBegin = rowBegin;
     args.rowEnd = rowEnd;
-    for (int axis = 0; axis < 3; ++axis) args.x[axis] = x.axis(axis);
-    for (int kind = 0; kind < kSpringKinds; ++kind) args.nearSquared[kind] = nearSquared[kind].data();
+    for (int axis = 0; axis < 3; ++axis) {
+      args.x[axis] = x.axis(axis);
+      args.origin[axis] = x(axis, 0);
+    }
+    args.farthest = farthest;
+    args.nearSquared = nearSquared.data();
+    args.nearStride = NearStride();
+    std::vector<float> scratch(At(MarkScratch(numWidth)));
+    args.scratch = scratch.data();
     args.nearKinds = marks.data();
     return kernels.markLongSprings(args);
   }
 
   std::int64_t Limit(const Kernels& kernels) {
     std::vector<std::uint8_t> marks(At(count + MarkPadding(numWidth)), 0);
-    if (Mark(kernels, 0, numHeight, marks) == 0) return 0;
+    const std::int64_t found = Mark(kernels, 0, numHeight, marks);
+    if (found == 0) return 0;
+    if ((found & kSomeAreFarAway) != 0) std::copy(kinds.begin(), kinds.end(), marks.begin());
     std::vector<float> moved(At(count), 0);
     StrainArgs args{};
     args.numWidth = numWidth;
@@ -108,7 +120,8 @@ struct Sheet {
   int numWidth, numHeight, count;
   Axes x;
   RestLengths rest;
-  std::vector<double> nearSquared[kSpringKinds];
+  float farthest = 1000;           // from the first point, along each axis
+  std::vector<float> nearSquared;  // per kind and column
   std::vector<std::uint8_t> fixed, kinds;
   double shortest;
 };
@@ -163,23 +176,52 @@ TEST_CASE("rows are marked by themselves: what another thread owns is not touche
           CAPTURE(rowBegin);
           CAPTURE(rowEnd);
           std::vector<std::uint8_t> marks(At(s.count + kGridPad), kForeign);
-          const bool marked = s.Mark(*kernels, rowBegin, rowEnd, marks) != 0;
+          const std::int64_t found = s.Mark(*kernels, rowBegin, rowEnd, marks);
           bool expected = false;
           for (int p = 0; p < s.count + kGridPad; ++p) {
-            std::uint8_t mark = kForeign;
-            if (p >= rowBegin * numWidth && p < rowEnd * numWidth) {
-              mark = 0;
-              for (int kind = 0; kind < kSpringKinds; ++kind) {
-                const bool near = Creates(numWidth, p, kind) && s.Squared(p, kind) > s.nearSquared[kind][At(p)];
-                mark = static_cast<std::uint8_t>(mark | (near ? 1u << kind : 0));
-              }
-              expected = expected || mark != 0;
+            if (p < rowBegin * numWidth || p >= rowEnd * numWidth) {
+              REQUIRE(marks[At(p)] == kForeign);
+              continue;
             }
-            REQUIRE(marks[At(p)] == mark);
+            REQUIRE(marks[At(p)] < 1u << kSpringKinds);
+            for (int kind = 0; kind < kSpringKinds; ++kind) {
+              const bool mark = (marks[At(p)] >> kind & 1) != 0;
+              REQUIRE((!mark || Creates(numWidth, p, kind)));
+              if (!Creates(numWidth, p, kind)) continue;
+              // In float, what is as long as that may be told or not.
+              const double ratio = s.Squared(p, kind) / s.nearSquared[At(kind * s.NearStride() + p % numWidth)];
+              if (std::abs(ratio - 1) > 1e-4) REQUIRE(mark == (ratio > 1));
+              expected = expected || mark;
+            }
           }
-          // A spring of the rows that follow may be told too.
-          REQUIRE((marked || !expected));
-          if (rowEnd == kHeight) REQUIRE(marked == expected);
+          REQUIRE(((found & kSomeAreNear) != 0) == expected);
+          REQUIRE((found & kSomeAreFarAway) == 0);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("points too far away to be measured in float are told, and those of others are not") {
+  SplitMix64 random(32);
+  constexpr int kHeight = 4;
+  for (const Kernels* kernels : RunnableKernels()) {
+    for (const int numWidth : {2, 5, 8, 9, 17}) {
+      Sheet s(numWidth, kHeight, random);
+      s.farthest = static_cast<float>(numWidth + kHeight);
+      for (int p = 0; p < s.count + kGridPad; ++p) {
+        for (int axis = 0; axis < 3; ++axis) {
+          for (const double way : {-1.0, 1.0}) {
+            CAPTURE(std::string(kernels->name));
+            CAPTURE(numWidth);
+            CAPTURE(p);
+            Sheet moved = s;
+            moved.x(axis, p) += way * 3 * (numWidth + kHeight);
+            std::vector<std::uint8_t> marks(At(s.count + kGridPad), 0);
+            const std::int64_t found = moved.Mark(*kernels, 0, kHeight, marks);
+            // What is far from the first is so from all others when that moves.
+            REQUIRE(((found & kSomeAreFarAway) != 0) == (p < s.count));
+          }
         }
       }
     }

@@ -118,6 +118,16 @@ TEST_CASE("several cloths of different thickness, spheres and planes in both ord
   }
 }
 
+TEST_CASE("a cloth torn to many times its size, far from the origin, equals the plain twin") {
+  for (const double way : {0.0, 3.0, 40.0}) {
+    CAPTURE(way);
+    Scene scene = CourseScene("pinned2", 21);
+    scene.cloths[0].origin = {-900, 30, 4000};
+    scene.pinMotions.push_back({0, {{20, 0}}, 0, 0.3, {way, 0.2 * way, 0}});
+    CHECK(RunBoth(scene, Frames(60)) == "");
+  }
+}
+
 TEST_CASE("wind, pins that move, and the ends of damping equal the plain twin") {
   Scene windy = CourseScene("pinned2", 20);
   windy.wind = {{2, 0.5, 4}, 1.5, 0.5, 0.7};
