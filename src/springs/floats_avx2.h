@@ -40,9 +40,11 @@ inline unsigned Bits(FloatMask m) {
 /// Lanes by `turn` farther on, the first after the last.
 template <int turn>
 inline FloatPack Turn(FloatPack a) {
+  static_assert(turn > 0 && turn <= 4);
+  const __m256 halves = _mm256_permute2f128_ps(a.v, a.v, 1);
+  if constexpr (turn == 4) return {halves};
   return {
-      _mm256_permutevar8x32_ps(a.v, _mm256_setr_epi32(turn % 8, (turn + 1) % 8, (turn + 2) % 8, (turn + 3) % 8,
-                                                      (turn + 4) % 8, (turn + 5) % 8, (turn + 6) % 8, (turn + 7) % 8))};
+      _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(halves), _mm256_castps_si256(a.v), 4 * turn % 16))};
 }
 inline FloatPack Least(FloatPack a, FloatPack b) {
   return {_mm256_min_ps(a.v, b.v)};
@@ -62,14 +64,16 @@ inline FloatPack SquaredLength(FloatPack x, FloatPack y, FloatPack z) {
 inline unsigned AtMost(FloatPack a, float bound) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, _mm256_set1_ps(bound), _CMP_LE_OQ)));
 }
-/// from[index[lane]] - origin for the first `count` lanes, and numbers far from all others in the rest.
-/// All eight must be indices.
-inline void GatherFloats(const double* from, const std::int32_t* index, int count, double origin, float* to) {
+/// from[index[lane]] - origin. All eight must be indices.
+inline FloatPack GatherFloats(const double* from, const std::int32_t* index, double origin) {
   const __m256d o = _mm256_set1_pd(origin);
   const __m256d low = _mm256_setr_pd(from[index[0]], from[index[1]], from[index[2]], from[index[3]]);
   const __m256d high = _mm256_setr_pd(from[index[4]], from[index[5]], from[index[6]], from[index[7]]);
-  const __m256 near = _mm256_set_m128(_mm256_cvtpd_ps(_mm256_sub_pd(high, o)), _mm256_cvtpd_ps(_mm256_sub_pd(low, o)));
+  return {_mm256_set_m128(_mm256_cvtpd_ps(_mm256_sub_pd(high, o)), _mm256_cvtpd_ps(_mm256_sub_pd(low, o)))};
+}
+/// The first `count` lanes, and numbers far from all others, and from each other, in the rest.
+inline FloatPack FarAfter(int count, FloatPack a) {
   const __m256 far = _mm256_setr_ps(1e15f, 2e15f, 3e15f, 4e15f, 5e15f, 6e15f, 7e15f, 8e15f);
-  const __m256i beyond = _mm256_cmpgt_epi32(_mm256_set1_epi32(count), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-  _mm256_storeu_ps(to, _mm256_blendv_ps(far, near, _mm256_castsi256_ps(beyond)));
+  const __m256i first = _mm256_cmpgt_epi32(_mm256_set1_epi32(count), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  return {_mm256_blendv_ps(far, a.v, _mm256_castsi256_ps(first))};
 }

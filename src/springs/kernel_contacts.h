@@ -16,7 +16,7 @@ inline Words Parts(const double* x, Pack perMetre) {
   return WordsOf(Load(x) * perMetre + All(kRounder));
 }
 /// Whether the exact coordinate may be on the other side of a whole number.
-inline unsigned IsDoubtful(Words parts) {
+inline Mask IsDoubtful(Words parts) {
   return Lack(parts + AllWords(1), AllWords(kPartMask - 3));  // from one part below to two above
 }
 
@@ -60,7 +60,7 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
                         (Up<2 * kIndexBits - kPartBits>(z) & AllWords(kIndexMask << 2 * kIndexBits));
       const Words top = AllWords(kRounderTop << 52);  // sums that do not have it are beyond 2^51 parts
       const Words beyond = Down<52>((x ^ top) | (y ^ top) | (z ^ top));
-      doubts = IsDoubtful(x) | IsDoubtful(y) | IsDoubtful(z);
+      doubts = Bits(IsDoubtful(x) | IsDoubtful(y) | IsDoubtful(z));
       changes = doubts | Differ((key ^ LoadWords(a.key + begin)) | beyond, AllWords(0));
       if (changes == 0) continue;
       doubts |= Differ(beyond, AllWords(0));
@@ -115,9 +115,9 @@ inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, i
   alignas(64) float x[3][kMost];  // relative to the first
   next = end = 0;
   const auto gather = [&](int m) {
-    for (int axis = 0; axis < 3; ++axis) {
-      GatherFloats(a.x[axis], members + m, count - m, a.x[axis][members[0]], x[axis] + m);
-    }
+    const auto axis = [&](int k) { return GatherFloats(a.x[k], members + m, a.x[k][members[0]]); };
+    StoreFloats(x[0] + m, FarAfter(count - m, axis(0)));
+    StoreFloats(x[1] + m, axis(1)), StoreFloats(x[2] + m, axis(2));
   };
   const auto block = [&](int m) {
     return FloatPack3{LoadFloats(x[0] + m), LoadFloats(x[1] + m), LoadFloats(x[2] + m)};
@@ -143,27 +143,30 @@ inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, i
   std::uint64_t near[kMost], todo = 0;
   const float distances[2] = {reach.slight, reach.far};
   for (const float within : distances) {
-    unsigned deep = 0;
+    FloatPack least = AllFloats(reach.far);
+    WideFloats leastWide = AllWide(reach.far);
     todo = 0;
     for (int m = 0; m < count; ++m) {
       std::uint64_t bits = 0;
-      const auto compare = [&](const auto& squares, int other) {
-        bits |= std::uint64_t{AtMost(squares, within)} << other;
-        deep |= AtMost(squares, reach.deep);
-      };
       const float* const itself = kFarFromItself.squares + kMost - m;
       int other = 0;
       for (; other + kFloatLanes < count; other += kWideLanes) {
         const WideFloats squares =
             SquaredLength(AllWide(x[0][m]) - LoadWide(x[0] + other), AllWide(x[1][m]) - LoadWide(x[1] + other),
-                          AllWide(x[2][m]) - LoadWide(x[2] + other));
-        compare(squares + LoadWide(itself + other), other);
+                          AllWide(x[2][m]) - LoadWide(x[2] + other)) +
+            LoadWide(itself + other);
+        bits |= std::uint64_t{AtMost(squares, within)} << other;
+        leastWide = Least(leastWide, squares);
       }
-      if (other < count) compare(SquaredDistance(alone(m), block(other)) + LoadFloats(itself + other), other);
+      if (other < count) {
+        const FloatPack squares = SquaredDistance(alone(m), block(other)) + LoadFloats(itself + other);
+        bits |= std::uint64_t{AtMost(squares, within)} << other;
+        least = Least(least, squares);
+      }
       near[m] = bits;
       todo |= bits;
     }
-    if (deep == 0) break;
+    if ((AtMost(least, reach.deep) | AtMost(leastWide, reach.deep)) == 0) break;
   }
   int most = 0;
   for (; todo != 0; todo &= todo - 1, ++end) {
@@ -302,7 +305,7 @@ inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
 }
 
 constexpr double kDeepShare = 0.85;  // of what points keep apart; tuned on selfCollision
-constexpr double kMostSpan = 1e9;    // m; far below the numbers that GatherFloats puts into empty lanes
+constexpr double kMostSpan = 1e9;    // m; far below the numbers that FarAfter puts into empty lanes
 
 std::int64_t SeparateBuckets(const BucketArgs& a) {
   // No point moves farther than a part in stepsPerFrame of the distance that it keeps: farther pairs than that

@@ -109,8 +109,8 @@ inline Words Up(Words a) {
 inline unsigned Differ(Words a, Words b) {
   return ~Bits(Mask{_mm256_castsi256_pd(_mm256_cmpeq_epi64(a.v, b.v))}) & 15;
 }
-inline unsigned Lack(Words a, Words bits) {
-  return Bits(Mask{_mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(a.v, bits.v), _mm256_setzero_si256()))});
+inline Mask Lack(Words a, Words bits) {
+  return {_mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(a.v, bits.v), _mm256_setzero_si256()))};
 }
 inline Pack Gather(const double* from, const std::int32_t* index) {
   return {_mm256_setr_pd(from[index[0]], from[index[1]], from[index[2]], from[index[3]])};

@@ -108,12 +108,13 @@ template <int bits>
 inline Words Up(Words a) {
   return {_mm512_slli_epi64(a.v, bits)};
 }
-/// One bit per lane. Lack: where none of those bits is set.
+/// One bit per lane.
 inline unsigned Differ(Words a, Words b) {
   return _mm512_cmpneq_epi64_mask(a.v, b.v);
 }
-inline unsigned Lack(Words a, Words bits) {
-  return _mm512_testn_epi64_mask(a.v, bits.v);
+/// Where none of those bits is set.
+inline Mask Lack(Words a, Words bits) {
+  return {_mm512_testn_epi64_mask(a.v, bits.v)};
 }
 /// from[index[lane]].
 inline Pack Gather(const double* from, const std::int32_t* index) {
@@ -189,6 +190,9 @@ inline WideFloats operator+(WideFloats a, WideFloats b) {
 }
 inline WideFloats operator-(WideFloats a, WideFloats b) {
   return {_mm512_sub_ps(a.v, b.v)};
+}
+inline WideFloats Least(WideFloats a, WideFloats b) {
+  return {_mm512_min_ps(a.v, b.v)};
 }
 inline WideFloats SquaredLength(WideFloats x, WideFloats y, WideFloats z) {
   return {_mm512_fmadd_ps(x.v, x.v, _mm512_fmadd_ps(y.v, y.v, _mm512_mul_ps(z.v, z.v)))};

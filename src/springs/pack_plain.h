@@ -117,8 +117,9 @@ inline Words Up(Words a) {
 inline unsigned Differ(Words a, Words b) {
   return Bits(Mask{{a.v[0] != b.v[0], a.v[1] != b.v[1], a.v[2] != b.v[2], a.v[3] != b.v[3]}});
 }
-inline unsigned Lack(Words a, Words bits) {
-  return Differ(a & bits, AllWords(0)) ^ 15;
+inline Mask Lack(Words a, Words bits) {
+  const Words set = a & bits;
+  return {{set.v[0] == 0, set.v[1] == 0, set.v[2] == 0, set.v[3] == 0}};
 }
 inline Pack Gather(const double* from, const std::int32_t* index) {
   return Each([&](int i) { return from[index[i]]; });
@@ -199,8 +200,9 @@ inline unsigned AtMost(FloatPack a, float bound) {
   for (int i = 0; i < 8; ++i) bits |= (a.v[i] <= bound ? 1u : 0u) << i;
   return bits;
 }
-inline void GatherFloats(const double* from, const std::int32_t* index, int count, double origin, float* to) {
-  for (int i = 0; i < 8; ++i) {
-    to[i] = i < count ? static_cast<float>(from[index[i]] - origin) : 1e15f * static_cast<float>(i + 1);
-  }
+inline FloatPack GatherFloats(const double* from, const std::int32_t* index, double origin) {
+  return EachFloat([&](int i) { return static_cast<float>(from[index[i]] - origin); });
+}
+inline FloatPack FarAfter(int count, FloatPack a) {
+  return EachFloat([&](int i) { return i < count ? a.v[i] : 1e15f * static_cast<float>(i + 1); });
 }

@@ -19,7 +19,7 @@ constexpr double kNearShare = 0.01;    // a spring this close to the limit is lo
 constexpr double kBendingShare = 0.2;  // bending springs have this share of ks
 constexpr double kFarAway = 4;         // of a cloth's size: a point farther from its first is not measured in float
 constexpr double kBound = 1e6;         // m; a cloth this far out has diverged
-constexpr int kPointsPerChunk = 2560;  // of all loops; below it a second thread does not pay
+constexpr int kPointsPerChunk = 2560;  // of all loops, where there are threads; below it a second one does not pay
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Square of the length from which on a spring is looked at, when measured in float from positions relative to another
@@ -50,6 +50,7 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
     widest = std::max(widest, model.numWidth);
   }
 
+  pointsPerChunk_ = executor_.threads() > 1 ? kPointsPerChunk : std::max(pointCount_, 1);
   const std::size_t count = Index(pointCount_);
   axisStride_ = GridPadding(widest) + RoundUpToPad(pointCount_) + kGridPad;
   positionStore_.resize(Index(3 * axisStride_));
@@ -69,7 +70,7 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
   integrateScratch_.assign(Index(chunkCount_) * Index(scratchPerChunk_), 0);
   markScratchPerChunk_ = MarkScratch(widest);
   markScratch_.assign(Index(chunkCount_) * Index(markScratchPerChunk_), 0);
-  const int bucketChunks = pointCount_ / kPointsPerChunk + 2;
+  const int bucketChunks = pointCount_ / pointsPerChunk_ + 2;
   bucketChunks_.reserve(Index(bucketChunks));
   bucketScratch_.resize(3 * (count + Index(kGridPad * bucketChunks)));
   chunkCounts_.resize(Index(std::max({chunkCount_, bucketChunks, PointChunks()})));
@@ -184,15 +185,15 @@ void SpringsEngine::ForRowChunks(Body&& body) {
 }
 
 int SpringsEngine::PointChunks() const {
-  return (pointCount_ + kPointsPerChunk - 1) / kPointsPerChunk;
+  return (pointCount_ + pointsPerChunk_ - 1) / pointsPerChunk_;
 }
 
 /// Calls body(begin, end, chunk) for chunks of all points.
 template <class Body>
 void SpringsEngine::ForPointChunks(Body&& body) {
   executor_.ForChunks(PointChunks(), [&](int chunk) {
-    const int begin = chunk * kPointsPerChunk;
-    body(begin, std::min(begin + kPointsPerChunk, pointCount_), chunk);
+    const int begin = chunk * pointsPerChunk_;
+    body(begin, std::min(begin + pointsPerChunk_, pointCount_), chunk);
   });
 }
 
@@ -311,7 +312,7 @@ void SpringsEngine::FindContacts() {
     std::size_t changes = 0;  // of all chunks, brought together
     for (int chunk = 0; chunk < PointChunks(); ++chunk) {
       const std::size_t count = Index(chunkCounts_[Index(chunk)]);
-      std::copy_n(boxChanges_.data() + chunk * kPointsPerChunk, count, boxChanges_.data() + changes);
+      std::copy_n(boxChanges_.data() + chunk * pointsPerChunk_, count, boxChanges_.data() + changes);
       changes += count;
     }
     map_.Update(boxKeys_, {boxChanges_.data(), changes});
@@ -324,7 +325,7 @@ void SpringsEngine::FindContacts() {
   std::int32_t points = 0, pointsBefore = 0;
   for (int bucket = 0; bucket < map_.BucketCount(); ++bucket) {
     points += map_.Count()[bucket];
-    if (points - pointsBefore < kPointsPerChunk && bucket + 1 < map_.BucketCount()) continue;
+    if (points - pointsBefore < pointsPerChunk_ && bucket + 1 < map_.BucketCount()) continue;
     bucketChunks_.push_back({bucket + 1, pointsBefore});
     pointsBefore = points;
   }

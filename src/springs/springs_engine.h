@@ -130,6 +130,7 @@ class SpringsEngine {
   double dt_ = 0;
   double time_ = 0;  // of the last step [s]
   int pointCount_ = 0;
+  int pointsPerChunk_ = 1;
   int chunkCount_ = 0;
   std::vector<Sheet> sheets_;
   std::vector<Vec3> start_;
