@@ -73,22 +73,24 @@ std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
 GreatestStretchResult GreatestStretch(const GreatestStretchArgs& a) {
   const Steps step(a.numWidth);
   GreatestStretchResult result{0, 0};
-  Pack greatest = All(0);
   for (std::int64_t p = 0; p < a.pointCount; p += kLanes) {
     const Pack3 x = Load3(a.x, p);
-    Pack ratio = All(0);
+    Pack squared[kKinds], restSquared[kKinds];
+    Mask longer = FirstLanes(0);
     for (int kind = 0; kind < kKinds; ++kind) {
       const Pack rest = Load(a.rest[kind] + p);  // kNoSpringRest: the ratio is zero
-      ratio = Max(ratio, SquaredLength(Load3(a.x, p + step[kind]) - x) / (rest * rest));
+      squared[kind] = SquaredLength(Load3(a.x, p + step[kind]) - x);
+      restSquared[kind] = rest * rest;
+      longer = longer | (squared[kind] > restSquared[kind] * All(result.squaredRatio * (1 - 1e-12)));
     }
-    const unsigned beyond = Bits(ratio > greatest);
-    if (beyond == 0) continue;
+    if (Bits(longer) == 0) continue;  // surely not: without a quotient
+    Pack ratio = All(0);
+    for (int kind = 0; kind < kKinds; ++kind) ratio = Max(ratio, squared[kind] / restSquared[kind]);
     double lanes[kLanes];
     Store(lanes, ratio);
     for (int lane = 0; lane < kLanes; ++lane) {
       if (lanes[lane] > result.squaredRatio) result = {lanes[lane], p + lane};
     }
-    greatest = All(result.squaredRatio);
   }
   return result;
 }
@@ -167,11 +169,12 @@ struct StrainSweep {
       if (fixedP && fixedQ) continue;
       const double length = Sqrt(squared);
       if (squared < limitSquared * (1 + 1e-12) && length <= limit) continue;  // else surely too long
-      const double factor = (length - limit) / length;
+      // Shares are powers of two or zero: what they scale is rounded alike.
       const double shareP = fixedP ? 0 : fixedQ ? 1 : 0.5, shareQ = fixedQ ? 0 : 1 - shareP;
+      const double factor = (length - limit) / (fixedP || fixedQ ? length : 2 * length);
       const double ex = dx * factor, ey = dy * factor, ez = dz * factor;
-      px += shareP * ex, py += shareP * ey, pz += shareP * ez;
-      a.x[0][q] -= shareQ * ex, a.x[1][q] -= shareQ * ey, a.x[2][q] -= shareQ * ez;
+      if (!fixedP) px += ex, py += ey, pz += ez;
+      if (!fixedQ) a.x[0][q] -= ex, a.x[1][q] -= ey, a.x[2][q] -= ez;
       ++limited;
       moved = true;
       if (MovesFar(p, shareP * (length - limit))) {

@@ -577,10 +577,17 @@ double SpringsEngine::ElasticEnergy() const {
 }
 
 VertexRef SpringsEngine::FindOutOfBounds() const {
+  const auto isOutside = [&](double x) { return !(std::abs(x) <= bound_); };
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
-    for (int v = 0; v < sheets_[s].PointCount(); ++v) {
+    const int count = sheets_[s].PointCount();
+    bool any = false;
+    for (const double* axis : positions_) {
+      const double* const x = axis + sheets_[s].firstPoint;
+      for (int v = 0; v < count; ++v) any |= isOutside(x[v]);  // without a way out, several at a time
+    }
+    for (int v = 0; any && v < count; ++v) {
       for (const double* axis : positions_) {
-        if (!(std::abs(axis[Index(sheets_[s].firstPoint + v)]) <= bound_)) return {static_cast<int>(s), v};
+        if (isOutside(axis[Index(sheets_[s].firstPoint + v)])) return {static_cast<int>(s), v};
       }
     }
   }
