@@ -237,12 +237,13 @@ void World::Impl::ReadState() {
     Cloth& cloth = cloths[c];
     std::vector<Vec3>& now = cloth.velocities;  // for a moment
     engine->readState(engineState.get(), static_cast<int>(c), now, cloth.previous);
-    for (std::size_t v = 0; v < now.size(); ++v) {
-      const Vec3 way = now[v] - cloth.positions[v];
+    const double dt = scene->TimeStep();
+    for (std::size_t v = 0; v < now.size(); ++v) {  // once, since large cloths come from far away
+      const Vec3 at = now[v], way = at - cloth.positions[v];
       move = std::max(move, Dot(way, way));
+      cloth.positions[v] = at;
+      cloth.velocities[v] = (at - cloth.previous[v]) / dt;
     }
-    cloth.positions = now;
-    ComputeVelocities(cloth.positions, cloth.previous, scene->TimeStep(), cloth.velocities);
   }
   report.greatestMove = std::sqrt(move);
 }
