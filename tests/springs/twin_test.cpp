@@ -128,6 +128,20 @@ TEST_CASE("a cloth torn to many times its size, far from the origin, equals the 
   }
 }
 
+TEST_CASE("the smallest and the largest cloths equal the plain twin") {
+  for (const double size : {2e-8, 1e-4, 300.0}) {
+    CAPTURE(size);
+    Scene scene = CourseScene("pinned2", 12);
+    scene.simulation.gravity = {0, -9.8 * size, 0};
+    scene.cloths[0].width = scene.cloths[0].height = size;
+    scene.cloths[0].origin = {0, 0, 0};
+    scene.cloths[0].thickness = 1e-3 * size;
+    scene.cloths[0].ks *= size * size;  // as the mass
+    scene.pinMotions.push_back({0, {{11, 0}}, 0, 0.3, {0.5 * size, 0.2 * size, 0}});
+    CHECK(RunBoth(scene, Frames(40)) == "");
+  }
+}
+
 TEST_CASE("wind, pins that move, and the ends of damping equal the plain twin") {
   Scene windy = CourseScene("pinned2", 20);
   windy.wind = {{2, 0.5, 4}, 1.5, 0.5, 0.7};
