@@ -7,16 +7,17 @@ struct alignas(64) Pulls {
   static constexpr int kSize = 8 * kLanes;
   static constexpr int kStride = kLanes + kSize;  // from axis to axis
   static constexpr int kSums = kKinds;
-  double axes[kKinds + 1][3 * kStride] = {};
+  static constexpr int kKindStride = 3 * kStride;
+  double axes[(kKinds + 1) * kKindStride] = {};
 
   /// The place of a block, for Get and Put.
-  double* Block(std::int64_t at) { return axes[0] + kLanes + Slot(at, kSize); }
-  static Pack3 Get(const double* block, int kind) { return LoadStrided3(block + kind * 3 * kStride, kStride); }
+  double* Block(std::int64_t at) { return axes + kLanes + Slot(at, kSize); }
+  static Pack3 Get(const double* block, int kind) { return LoadStrided3(block + kind * kKindStride, kStride); }
   static void Put(double* block, int kind, const Pack3& pull) {
-    StoreStrided3(block + kind * 3 * kStride, kStride, pull);
+    StoreStrided3(block + kind * kKindStride, kStride, pull);
   }
   void RepeatLastBlock() {
-    for (int kind = 0; kind <= kKinds; ++kind) Put(axes[0], kind, Get(axes[0] + kSize, kind));
+    for (int kind = 0; kind <= kKinds; ++kind) Put(axes, kind, Get(axes + kSize, kind));
   }
 };
 
