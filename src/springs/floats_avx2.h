@@ -19,11 +19,13 @@ inline FloatPack operator+(FloatPack a, FloatPack b) {
 inline FloatPack operator-(FloatPack a, FloatPack b) {
   return {_mm256_sub_ps(a.v, b.v)};
 }
+inline FloatPack FloatsOf(__m256d low, __m256d high) {
+  return {_mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low))};
+}
 /// How far eight numbers are before `origin`.
 inline FloatPack FloatsBefore(double origin, const double* x) {
   const __m256d o = _mm256_set1_pd(origin);
-  return {_mm256_set_m128(_mm256_cvtpd_ps(_mm256_sub_pd(o, _mm256_loadu_pd(x + 4))),
-                          _mm256_cvtpd_ps(_mm256_sub_pd(o, _mm256_loadu_pd(x))))};
+  return FloatsOf(_mm256_sub_pd(o, _mm256_loadu_pd(x)), _mm256_sub_pd(o, _mm256_loadu_pd(x + 4)));
 }
 struct FloatMask {
   __m256 v;
@@ -69,7 +71,7 @@ inline FloatPack GatherFloats(const double* from, const std::int32_t* index, dou
   const __m256d o = _mm256_set1_pd(origin);
   const __m256d low = _mm256_setr_pd(from[index[0]], from[index[1]], from[index[2]], from[index[3]]);
   const __m256d high = _mm256_setr_pd(from[index[4]], from[index[5]], from[index[6]], from[index[7]]);
-  return {_mm256_set_m128(_mm256_cvtpd_ps(_mm256_sub_pd(high, o)), _mm256_cvtpd_ps(_mm256_sub_pd(low, o)))};
+  return FloatsOf(_mm256_sub_pd(low, o), _mm256_sub_pd(high, o));
 }
 /// The first `count` lanes, and numbers far from all others, and from each other, in the rest.
 inline FloatPack FarAfter(int count, FloatPack a) {

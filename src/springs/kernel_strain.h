@@ -28,8 +28,10 @@ std::int64_t MarkLongSprings(const LongSpringsArgs& a) {
   for (int row = 0; row < 3; ++row) rows[row] = {a.scratch + 3 * row * stride + kFloatLanes, stride};
   // Springs to rows that do not exist are not longer than anything.
   const FloatPack nowhere = AllFloats(NAN);
-  for (std::int64_t i = 0; a.rowBegin < 2 && i < n + kFloatLanes; i += kFloatLanes) {
-    for (int row = 0; row < 2; ++row) rows[row].Put(i, {nowhere, nowhere, nowhere});
+  if (a.rowBegin < 2) {
+    for (std::int64_t i = 0; i < n + kFloatLanes; i += kFloatLanes) {
+      for (int row = 0; row < 2; ++row) rows[row].Put(i, {nowhere, nowhere, nowhere});
+    }
   }
   FloatPack farthest = AllFloats(0);
   std::uint64_t any = 0;

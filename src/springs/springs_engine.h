@@ -49,8 +49,8 @@ struct Sheet {
   int rowsPerChunk = 1;
   int firstChunk = 0;
   int PointCount() const { return numWidth * numHeight; }
-  std::int64_t NearStride() const { return numWidth + kGridPad; }                               ///< Likewise.
   std::int64_t RestStride() const { return kGridPad + RoundUpToPad(PointCount()) + kGridPad; }  ///< From kind to kind.
+  std::int64_t NearStride() const { return numWidth + kGridPad; }                               ///< Likewise.
   const double* Rest(int kind) const { return rest.data() + kind * RestStride() + kGridPad; }   ///< Of the first point.
   double* Rest(int kind) { return rest.data() + kind * RestStride() + kGridPad; }
 };
