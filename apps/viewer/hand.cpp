@@ -23,8 +23,8 @@ constexpr double kArrowLength = 70;
 /// Half the edge of the square that stands for a plane in the picture [m].
 constexpr double kDrawnPlane = 2;
 /// A collider goes at most so far in a frame of the simulation [m]: where frames take long the hand is far ahead, and
-/// what jumps after it would tear at the cloth and make frames longer still.
-constexpr double kColliderLead = 0.1;
+/// what jumps after it would tear at the cloth and make frames longer still. Its next move waits for that frame.
+constexpr double kColliderLead = 0.05;
 constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 Ray PointerRay(const Session& session, double x, double y, PictureSize size) {
@@ -324,9 +324,7 @@ void Hand::Follow(Session& session) {
   if (!selected || !goal_) return;
   Vec3 place = *goal_;
   if (session.playback().running()) {
-    const int frame = session.snapshot().report.frame;
-    if (frame == goalFrame_) return;
-    goalFrame_ = frame;
+    if (!session.playback().caughtUp()) return;
     const Vec3 from = PlaceOf(*selected, session), way = place - from;
     if (Length(way) > kColliderLead) place = from + way * (kColliderLead / Length(way));
   }

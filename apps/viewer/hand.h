@@ -64,7 +64,6 @@ class Hand {
   std::optional<ColliderRef> selected_;
   int axis_ = -1;
   std::optional<Vec3> goal_;  // Where the collider is dragged [m], until it is there.
-  int goalFrame_ = -1;        // Of the simulation, in which it was last moved.
 };
 
 /// A gizmo as it stands in the picture: its centre and the ends of its arrows [screen unit].

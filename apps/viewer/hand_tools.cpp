@@ -13,6 +13,8 @@ constexpr double kGripShare = 0.06, kGripSpacings = 2.5;
 // So far ahead of its vertex a grip draws, over its radius: of a cloth of 1 m^2 and 0.15 kg with some 20 N, and at
 // 60 frames a second as fast as 4 m/s.
 constexpr double kGripLead = 1.5;
+// So far stretched, a spring at a pin is taut.
+constexpr double kTaut = 1.5;
 // A ball, for a cloth of 1 m: its radius [m], its share of the cloths' mass, its speed [m/s]; and how many
 // radii before the eye it starts, so that it does not fill the picture.
 constexpr double kBallSize = 0.07, kBallMass = 0.1, kBallSpeed = 5, kBallStart = 6;
@@ -33,6 +35,20 @@ Vec3 LeadOf(const Handle& grip, const Vec3& at, const Vec3& hand) {
   const Vec3 way = hand - at;
   const double length = Length(way), most = kGripLead * grip.radius;
   return length > most ? at + way * (most / length) : hand;
+}
+
+Vec3 CarriedWay(int pin, const Vec3& way, std::span<const Vec3> positions, std::span<const Edge> springs,
+                std::span<const double> restLengths) {
+  Vec3 pull;  // of the taut springs
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const auto [a, b] = springs[s];
+    if (a != pin && b != pin) continue;
+    const Vec3 to = positions[static_cast<std::size_t>(a == pin ? b : a)] - positions[static_cast<std::size_t>(pin)];
+    const double length = Length(to), excess = length - kTaut * restLengths[s];
+    if (excess > 0) pull += to * (excess / length);
+  }
+  const Vec3 back = UnitOr(pull, {});
+  return way - back * std::min(Dot(way, back), 0.0);
 }
 
 Ball BallFrom(const Scene& scene, const Vec3& point, const Vec3& direction) {

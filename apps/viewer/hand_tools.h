@@ -2,7 +2,10 @@
 /// \file
 /// The hand's tools: grips, balls and gusts, as large and as strong as suits the cloths of a scene.
 
+#include <span>
+
 #include "percale/interaction.h"
+#include "percale/mesh.h"
 #include "percale/scene.h"
 #include "percale/vec3.h"
 
@@ -14,6 +17,10 @@ Handle GripOf(const Scene& scene, int index, int vertex, const Vec3& at);
 /// strength for. A hand that has run away from the cloth while a frame took long, or to where pins do not let it, would
 /// tear at it without bounds.
 Vec3 LeadOf(const Handle& grip, const Vec3& at, const Vec3& hand);
+/// What of a `way` [m] a hand carries a pin, which gives way to nothing by itself: not farther off where the springs at
+/// it are taut already, stretched by half. `positions` [m] are the cloth's, `restLengths` [m] the springs'.
+Vec3 CarriedWay(int pin, const Vec3& way, std::span<const Vec3> positions, std::span<const Edge> springs,
+                std::span<const double> restLengths);
 /// A ball that comes from before a point in a direction.
 Ball BallFrom(const Scene& scene, const Vec3& point, const Vec3& direction);
 /// A second of wind in a direction.

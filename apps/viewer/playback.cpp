@@ -20,6 +20,7 @@ bool Playback::Update() {
   if (!simulation_.TakeSnapshot(snapshot_)) return false;
   for (const Executed& done : snapshot_.executed) {
     lastDone_ = std::max(lastDone_, done.command);
+    lastDoneFrame_ = done.frame;
     log_.Write(LogLine("done")
                    .Number("command", static_cast<double>(done.command))
                    .Number("at", done.at)

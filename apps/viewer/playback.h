@@ -34,6 +34,8 @@ class Playback {
   bool looping() const;  ///< Through the history.
   /// The frame that is shown, or will be when what was sent is done.
   int frame() const;
+  /// Whether all that was sent is done, and a frame has come of it.
+  bool caughtUp() const { return idle() && snapshot_.report.frame != lastDoneFrame_; }
 
   void Run(bool running);
   void TogglePause() { Run(!running() && !looping()); }
@@ -56,6 +58,7 @@ class Playback {
   Snapshot snapshot_;
   TimeMode wanted_ = TimeMode::Paused;
   std::uint64_t lastSent_ = 0, lastDone_ = 0;
+  int lastDoneFrame_ = -1;    // That the last command left.
   std::uint64_t sought_ = 0;  // The last command to seek, and where to.
   int soughtFrame_ = 0;
 };

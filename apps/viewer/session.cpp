@@ -129,8 +129,15 @@ void Session::FollowHand() {
   handle.target = hand_;
   const auto cloth = static_cast<std::size_t>(handle.cloth), vertex = static_cast<std::size_t>(handle.vertex);
   const std::vector<ClothCopy>& cloths = snapshot().cloths;
-  if (playback_.running() && cloth < cloths.size() && vertex < cloths[cloth].positions.size())
-    handle.target = LeadOf(handle, cloths[cloth].positions[vertex], hand_);
+  if (playback_.running() && cloth < cloths.size() && vertex < cloths[cloth].positions.size()) {
+    const ClothCopy& copy = cloths[cloth];
+    const Vec3& at = copy.positions[vertex];
+    handle.target = LeadOf(handle, at, hand_);
+    const ClothTopology& topology = *copy.topology;
+    if (std::binary_search(topology.pinned.begin(), topology.pinned.end(), handle.vertex))
+      handle.target =
+          at + CarriedWay(handle.vertex, handle.target - at, copy.positions, topology.springs, topology.restLengths);
+  }
   if (handle == handles_[0] || Check(handle)) return;  // the same, or beyond the world
   handles_ = {handle};
   SendHandles(false);

@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "mesh/rest_mesh.h"
 
@@ -32,6 +34,26 @@ TEST_CASE("a hand leads cloth, and does not tear at it from afar") {
   CHECK(Length(lead) > grip.radius);
   CHECK(Length(lead) < 2 * grip.radius);
   CHECK(Dot(lead, far - at) == doctest::Approx(Length(lead) * 50));
+}
+
+TEST_CASE("a pin that is carried does not tear at its cloth") {
+  // The pin, a neighbour to the right of it, and one below.
+  const std::vector<Edge> springs{{0, 1}, {0, 2}, {1, 2}};
+  const std::vector<double> restLengths{1, 1, std::sqrt(2.0)};
+  const std::vector<Vec3> slack{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}, taut{{0, 0, 0}, {1.6, 0, 0}, {0, -1, 0}};
+  const std::vector<Vec3> tautBoth{{0, 0, 0}, {1.6, 0, 0}, {0, -1.6, 0}};
+  const auto carried = [&](const std::vector<Vec3>& positions, const Vec3& way) {
+    return CarriedWay(0, way, positions, springs, restLengths);
+  };
+  CHECK(carried(slack, {-1, 2, 3}) == Vec3{-1, 2, 3});
+  // Not away from what is taut, but across, and back.
+  CHECK(carried(taut, {-1, 2, 3}) == Vec3{0, 2, 3});
+  CHECK(carried(taut, {1, 2, 3}) == Vec3{1, 2, 3});
+  CHECK(Length(carried(tautBoth, {-1, 1, 0})) < 1e-15);
+  CHECK(carried(tautBoth, {1, -1, 0}) == Vec3{1, -1, 0});
+  // What is taut elsewhere does not matter; and neighbours in the same place tell no direction.
+  CHECK(CarriedWay(2, {0, -1, 0}, taut, springs, restLengths) == Vec3{0, -1, 0});
+  CHECK(carried({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {1, 2, 3}) == Vec3{1, 2, 3});
 }
 
 TEST_CASE("the hand's tools will do for cloths of any size, and for none") {

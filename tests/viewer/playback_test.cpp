@@ -67,6 +67,26 @@ TEST_CASE("what was sent counts as done, and is what comes of it") {
   CHECK(playback.snapshot().report.frame == 3);
 }
 
+TEST_CASE("a command is caught up with when a frame has come of it") {
+  SessionLog log;
+  Playback playback(SmallScene(), {.threads = 1}, log);
+  const std::uint64_t command = playback.Send({.kind = Command::Kind::Handles});
+  CHECK_FALSE(playback.caughtUp());
+  WaitFor(playback, command);
+  CHECK_FALSE(playback.caughtUp());
+  playback.Run(true);
+  CHECK_FALSE(playback.caughtUp());
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!playback.caughtUp() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    playback.Update();
+  }
+  CHECK(playback.caughtUp());
+  CHECK(playback.snapshot().report.frame > 0);
+  playback.Run(false);
+  CHECK_FALSE(playback.caughtUp());
+}
+
 TEST_CASE("without a history there is nothing to go back to") {
   SessionLog log;
   Playback playback(SmallScene(), {.threads = 1}, log);
