@@ -1,5 +1,5 @@
-// Eight floats at a time, with AVX2, for tests that only rule out. Included by pack.h inside the namespace of an
-// instruction set; never elsewhere.
+// Eight floats, or points of few bits, at a time, with AVX2, for tests that only rule out. Included by pack.h inside
+// the namespace of an instruction set; never elsewhere.
 
 struct FloatPack {
   __m256 v;
@@ -39,18 +39,6 @@ inline FloatMask operator|(FloatMask a, FloatMask b) {
 inline unsigned Bits(FloatMask m) {
   return static_cast<unsigned>(_mm256_movemask_ps(m.v));
 }
-/// Lanes by `turn` farther on, the first after the last.
-template <int turn>
-inline FloatPack Turn(FloatPack a) {
-  static_assert(turn > 0 && turn <= 4);
-  const __m256 halves = _mm256_permute2f128_ps(a.v, a.v, 1);
-  if constexpr (turn == 4) return {halves};
-  return {
-      _mm256_castsi256_ps(_mm256_alignr_epi8(_mm256_castps_si256(halves), _mm256_castps_si256(a.v), 4 * turn % 16))};
-}
-inline FloatPack Least(FloatPack a, FloatPack b) {
-  return {_mm256_min_ps(a.v, b.v)};
-}
 inline FloatPack Greatest(FloatPack a, FloatPack b) {
   return {_mm256_max_ps(a.v, b.v)};
 }
@@ -66,16 +54,79 @@ inline FloatPack SquaredLength(FloatPack x, FloatPack y, FloatPack z) {
 inline unsigned AtMost(FloatPack a, float bound) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, _mm256_set1_ps(bound), _CMP_LE_OQ)));
 }
-/// from[index[lane]] - origin. All eight must be indices.
-inline FloatPack GatherFloats(const double* from, const std::int32_t* index, double origin) {
-  const __m256d o = _mm256_set1_pd(origin);
-  const __m256d low = _mm256_setr_pd(from[index[0]], from[index[1]], from[index[2]], from[index[3]]);
-  const __m256d high = _mm256_setr_pd(from[index[4]], from[index[5]], from[index[6]], from[index[7]]);
-  return FloatsOf(_mm256_sub_pd(low, o), _mm256_sub_pd(high, o));
+
+/// Eight points, whose coordinates are whole numbers below 2^14: x and y, and z and 0, in 16 bits each.
+struct Places {
+  __m256i xy, z;
+};
+/// Eight whole numbers.
+struct Ints {
+  __m256i v;
+};
+/// from[index[lane]], each of which has x in its lowest 16 bits, then y, then z, then zeros.
+inline Places GatherPlaces(const std::uint64_t* from, const std::int32_t* index) {
+  const auto at = [&](int i) { return static_cast<long long>(from[index[i]]); };
+  const __m256 a = _mm256_castsi256_ps(_mm256_setr_epi64x(at(0), at(1), at(4), at(5)));
+  const __m256 b = _mm256_castsi256_ps(_mm256_setr_epi64x(at(2), at(3), at(6), at(7)));
+  return {_mm256_castps_si256(_mm256_shuffle_ps(a, b, 0x88)), _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0xdd))};
 }
-/// The first `count` lanes, and numbers far from all others, and from each other, in the rest.
-inline FloatPack FarAfter(int count, FloatPack a) {
-  const __m256 far = _mm256_setr_ps(1e15f, 2e15f, 3e15f, 4e15f, 5e15f, 6e15f, 7e15f, 8e15f);
-  const __m256i first = _mm256_cmpgt_epi32(_mm256_set1_epi32(count), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-  return {_mm256_blendv_ps(far, a.v, _mm256_castsi256_ps(first))};
+/// Eight times the same.
+inline Places AllPlaces(std::uint64_t place) {
+  return {_mm256_set1_epi32(static_cast<int>(place)), _mm256_set1_epi32(static_cast<int>(place >> 32))};
+}
+inline void StorePlaces(std::int32_t* xy, std::int32_t* z, Places a) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(xy), a.xy);
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(z), a.z);
+}
+inline Places LoadPlaces(const std::int32_t* xy, const std::int32_t* z) {
+  return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(xy)),
+          _mm256_loadu_si256(reinterpret_cast<const __m256i*>(z))};
+}
+/// One of those that were stored, eight times.
+inline Places AllPlaces(const std::int32_t* xy, const std::int32_t* z) {
+  return {_mm256_set1_epi32(*xy), _mm256_set1_epi32(*z)};
+}
+/// The first `count` lanes, which is 2 at least; the others are 2^13 or more from these, and from each other, in a
+/// fourth dimension.
+inline Places FirstPlaces(int count, Places a) {
+  constexpr int kApart = 1 << 29;  // 2^16 / 7: differences come round
+  const __m256i beyond =
+      _mm256_setr_epi32(kApart, kApart, kApart, 2 * kApart, 3 * kApart, -4 * kApart, -3 * kApart, -2 * kApart);
+  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  const __m256i first = _mm256_cmpgt_epi32(_mm256_set1_epi32(count), lanes);
+  return {a.xy, _mm256_or_si256(a.z, _mm256_andnot_si256(first, beyond))};
+}
+/// Lanes by `turn` farther on, the first after the last.
+template <int turn>
+inline Places Turn(Places a) {
+  static_assert(turn > 0 && turn <= 4);
+  const auto turned = [](__m256i v) {
+    const __m256i halves = _mm256_permute2x128_si256(v, v, 1);
+    return turn == 4 ? halves : _mm256_alignr_epi8(halves, v, 4 * turn % 16);
+  };
+  return {turned(a.xy), turned(a.z)};
+}
+inline Ints SquaredDistance(Places a, Places b) {
+  const __m256i xy = _mm256_sub_epi16(a.xy, b.xy), z = _mm256_sub_epi16(a.z, b.z);
+  return {_mm256_add_epi32(_mm256_madd_epi16(xy, xy), _mm256_madd_epi16(z, z))};
+}
+inline Ints AllInts(std::int32_t s) {
+  return {_mm256_set1_epi32(s)};
+}
+inline Ints Least(Ints a, Ints b) {
+  return {_mm256_min_epi32(a.v, b.v)};
+}
+/// A bit for each lane below the bound.
+inline unsigned Below(Ints a, std::int32_t bound) {
+  return static_cast<unsigned>(
+      _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(_mm256_set1_epi32(bound), a.v))));
+}
+/// Counts, per lane, how often one is below the bound.
+inline Ints PlusBelow(Ints counts, Ints a, std::int32_t bound) {
+  return {_mm256_sub_epi32(counts.v, _mm256_cmpgt_epi32(_mm256_set1_epi32(bound), a.v))};
+}
+inline int Sum(Ints a) {
+  const __m128i four = _mm_add_epi32(_mm256_castsi256_si128(a.v), _mm256_extracti128_si256(a.v, 1));
+  const __m128i two = _mm_add_epi32(four, _mm_shuffle_epi32(four, 0x4e));
+  return _mm_cvtsi128_si32(_mm_add_epi32(two, _mm_shuffle_epi32(two, 0xb1)));
 }

@@ -5,7 +5,6 @@ constexpr int kIndexBits = 21;  // of a key, for each axis
 constexpr std::uint64_t kIndexMask = (std::uint64_t{1} << kIndexBits) - 1;
 constexpr double kIndexEnd = 0x1p20;  // indices beyond it, or below its negative, come round
 constexpr int kPartBits = 30;         // of a coordinate in boxes after the point
-constexpr std::uint64_t kPartMask = (std::uint64_t{1} << kPartBits) - 1;
 /// Adding this to a number of at most 2^51 rounds it to a whole one, which then stands in the low bits.
 constexpr double kRounder = 6755399441055744.0;  // 1.5 * 2^52
 constexpr std::uint64_t kRounderTop = 0x433;     // its sign and exponent, and those of such sums
@@ -14,10 +13,6 @@ constexpr std::uint64_t kRounderTop = 0x433;     // its sign and exponent, and t
 /// most one part.
 inline Words Parts(const double* x, Pack perMetre) {
   return WordsOf(Load(x) * perMetre + All(kRounder));
-}
-/// Whether the exact coordinate may be on the other side of a whole number.
-inline Mask IsDoubtful(Words parts) {
-  return Lack(parts + AllWords(1), AllWords(kPartMask - 3));  // from one part below to two above
 }
 
 /// floor(coordinate / size) in the low bits of a key.
@@ -34,6 +29,22 @@ inline std::uint64_t ExactKey(const BoxKeyArgs& a, int p) {
   for (int axis = 0; axis < 3; ++axis) key |= ExactIndex(a.x[axis][p], a.boxSize[axis]) << kIndexBits * axis;
   return key;
 }
+/// A side of a box, in whole units of places.
+inline double UnitsOf(const BoxKeyArgs& a, double longest, int axis) {
+  return Floor(a.boxSize[axis] / longest * (1 << kPlaceBits));
+}
+/// Where it is within that box.
+inline std::uint64_t ExactPlace(const BoxKeyArgs& a, double longest, int p) {
+  std::uint64_t place = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = a.x[axis][p] / a.boxSize[axis], end = UnitsOf(a, longest, axis);
+    double units = (at - Floor(at)) * end;  // `end`, where the difference rounds to one
+    units = units < end ? units : end - 1;
+    units = units > 0 ? units : 0;  // too far out it may be no number
+    place |= static_cast<std::uint64_t>(units) << 16 * axis;
+  }
+  return place;
+}
 /// Whether a point is so far out that its indices come round.
 inline bool Wraps(const BoxKeyArgs& a, int p) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -49,6 +60,10 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
   for (int axis = 0; axis < 3; ++axis) {
     perMetre[axis] = All(static_cast<double>(std::uint64_t{1} << kPartBits) / a.boxSize[axis]);
   }
+  double longest = 0;
+  for (const double size : a.boxSize) longest = size > longest ? size : longest;
+  std::uint64_t sides = 0;  // of a box, in units
+  for (int axis = 0; axis < 3; ++axis) sides |= static_cast<std::uint64_t>(UnitsOf(a, longest, axis)) << 16 * axis;
   for (int begin = 0; begin < a.count; begin += kLanes) {
     std::uint64_t keys[kLanes];
     unsigned changes = 0, doubts = 0;  // a bit for each point whose key changed, or may have
@@ -58,12 +73,14 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
       const Words key = (Down<kPartBits>(x) & AllWords(kIndexMask)) |
                         (Down<kPartBits - kIndexBits>(y) & AllWords(kIndexMask << kIndexBits)) |
                         (Up<2 * kIndexBits - kPartBits>(z) & AllWords(kIndexMask << 2 * kIndexBits));
+      const Words inBox = Quarters(x, y, z);  // in 2^-16 of its sides
+      StoreWords(a.place + begin, TimesQuarters(inBox, AllWords(sides)));
       const Words top = AllWords(kRounderTop << 52);  // sums that do not have it are beyond 2^51 parts
       const Words beyond = Down<52>((x ^ top) | (y ^ top) | (z ^ top));
-      doubts = Bits(IsDoubtful(x) | IsDoubtful(y) | IsDoubtful(z));
-      changes = doubts | Differ((key ^ LoadWords(a.key + begin)) | beyond, AllWords(0));
+      const Words doubtful = beyond | ExtremeQuarters(inBox);  // may be on the other side of a whole number
+      changes = Differ((key ^ LoadWords(a.key + begin)) | doubtful, AllWords(0));
       if (changes == 0) continue;
-      doubts |= Differ(beyond, AllWords(0));
+      doubts = Differ(doubtful, AllWords(0));
       StoreWords(keys, key);
     } else {
       changes = doubts = (1u << (a.count - begin)) - 1;
@@ -71,6 +88,7 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
     for (; changes != 0; changes &= changes - 1) {
       const int lane = LowestBit(changes), p = begin + lane;
       const std::uint64_t key = (doubts >> lane & 1) != 0 ? ExactKey(a, p) : keys[lane];
+      if ((doubts >> lane & 1) != 0) a.place[p] = ExactPlace(a, longest, p);
       if (Wraps(a, p)) *a.wraps = 1;
       if (key == a.key[p]) continue;
       a.key[p] = key;
@@ -80,18 +98,54 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
   return changed;
 }
 
-/// Squares of distances between points, in float, with room for what that rounds [m^2].
+/// Squares of distances between places of points, with room for what these are off: points that are not below are
+/// farther apart than ...
 struct Reach {
-  float push;    ///< Points push each other that are as near.
-  float deep;    ///< A bucket without a pair as near is shallow: points move little there,
-  float slight;  ///< and only those that are as near may push each other after others have moved.
-  float far;     ///< The same for any bucket.
+  std::int32_t push;    ///< ... those that push each other.
+  std::int32_t deep;    ///< A bucket without a pair as near is shallow: points move little there,
+  std::int32_t slight;  ///< and only those that are as near may push each other after others have moved.
+  std::int32_t far;     ///< The same for any bucket.
 };
+
+/// A bucket whose points' distances are looked at.
+struct BucketPlaces {
+  static constexpr int kMost = 64;  // members
+  const std::int32_t* members;
+  int count;
+  std::int32_t xy[kMost], z[kMost];                      // in whole blocks: what is behind the last is far from all
+  std::int32_t turnedXy[2 * kMost], turnedZ[2 * kMost];  // the same, but behind the last are the first once more
+
+  /// Returns false where no point pushes another, as is seen at first sight: then none moves.
+  bool Take(const BucketArgs& a, const std::int32_t* bucket, int size, std::int32_t push);
+};
+
+inline bool BucketPlaces::Take(const BucketArgs& a, const std::int32_t* bucket, int size, std::int32_t push) {
+  members = bucket, count = size;
+  // Most buckets are few points that lie flat, three by three.
+  const auto gather = [&](int m) PERCALE_INLINE { return FirstPlaces(count - m, GatherPlaces(a.place, members + m)); };
+  const Places points = gather(0);
+  if (count <= kPlaceLanes + 1) {
+    Ints least = Least(Least(SquaredDistance(points, Turn<1>(points)), SquaredDistance(points, Turn<2>(points))),
+                       Least(SquaredDistance(points, Turn<3>(points)), SquaredDistance(points, Turn<4>(points))));
+    const std::uint64_t beyond = count > kPlaceLanes ? 0 : std::uint64_t{0xe000} << 48;
+    least = Least(least, SquaredDistance(points, AllPlaces(a.place[members[kPlaceLanes]] | beyond)));
+    if (Below(least, push) == 0) return false;
+  }
+  StorePlaces(xy, z, points), StorePlaces(turnedXy, turnedZ, points);
+  int end = kPlaceLanes;
+  for (; end < count; end += kPlaceLanes) {
+    const Places more = gather(end);
+    StorePlaces(xy + end, z + end, more), StorePlaces(turnedXy + end, turnedZ + end, more);
+  }
+  for (int m = 0; m < end; m += kPlaceLanes) {
+    StorePlaces(turnedXy + count + m, turnedZ + count + m, LoadPlaces(xy + m, z + m));
+  }
+  return true;
+}
 
 /// Which points of a bucket may come too close to which others while they move.
 struct NearPoints {
-  static constexpr int kMost = 64;  // members of a bucket
-  static constexpr int kMostOthers = 7;
+  static constexpr int kMost = BucketPlaces::kMost, kMostOthers = 7;
   /// A point that is near others: these in order, and then itself.
   struct alignas(32) Row {
     std::int32_t others[kMostOthers], point;
@@ -100,82 +154,80 @@ struct NearPoints {
   int others[kMost];                            // per row, how many there are
   int next = 0, end = 0;                        // rows whose points did not move yet
 
-  bool Find(const BucketArgs& a, const std::int32_t* members, int count, Reach reach);
+  /// Returns false when a point is near more others than a row can hold.
+  bool Find(const BucketPlaces& bucket, Reach reach);
+
+ private:
+  template <int blocks>
+  bool FindIn(const BucketPlaces& bucket, Reach reach);
 };
 
-/// What is added to the squares of distances to the members from kMost - m on, for member m: it is far from itself.
-struct FarFromItself {
-  float squares[2 * NearPoints::kMost + 2 * kFloatLanes] = {};
-  constexpr FarFromItself() { squares[NearPoints::kMost] = 1e30f; }
-};
-constexpr FarFromItself kFarFromItself;
+/// The same for a bucket of so many blocks, which are unrolled: loops of many lengths would be foretold badly.
+template <int blocks>
+inline bool NearPoints::FindIn(const BucketPlaces& bucket, Reach reach) {
+  const int count = bucket.count;
+  Places places[blocks];
+  for (int b = 0; b < blocks; ++b) places[b] = LoadPlaces(bucket.xy + b * kPlaceLanes, bucket.z + b * kPlaceLanes);
 
-/// Returns false when a point is near more others than a row can hold.
-inline bool NearPoints::Find(const BucketArgs& a, const std::int32_t* members, int count, Reach reach) {
-  alignas(64) float x[3][kMost];  // relative to the first
-  next = end = 0;
-  const auto gather = [&](int m) {
-    const auto axis = [&](int k) { return GatherFloats(a.x[k], members + m, a.x[k][members[0]]); };
-    StoreFloats(x[0] + m, FarAfter(count - m, axis(0)));
-    StoreFloats(x[1] + m, axis(1)), StoreFloats(x[2] + m, axis(2));
-  };
-  const auto block = [&](int m) {
-    return FloatPack3{LoadFloats(x[0] + m), LoadFloats(x[1] + m), LoadFloats(x[2] + m)};
-  };
-  const auto alone = [&](int m) { return FloatPack3{AllFloats(x[0][m]), AllFloats(x[1][m]), AllFloats(x[2][m])}; };
-
-  // Most buckets are few points that lie flat, three by three, and none pushes another: then none moves.
-  gather(0);
-  if (count <= kFloatLanes + 1) {
-    const std::int32_t last = members[count > kFloatLanes ? kFloatLanes : 0];
-    for (int axis = 0; axis < 3; ++axis) {
-      const float at = static_cast<float>(a.x[axis][last] - a.x[axis][members[0]]);
-      x[axis][kFloatLanes] = count > kFloatLanes ? at : 9e15f;  // far from all others
-    }
-    const FloatPack3 points = block(0);
-    const FloatPack least =
-        Least(Least(Least(SquaredDistance(points, Turn<1>(points)), SquaredDistance(points, Turn<2>(points))),
-                    Least(SquaredDistance(points, Turn<3>(points)), SquaredDistance(points, Turn<4>(points)))),
-              SquaredDistance(points, alone(kFloatLanes)));
-    if (AtMost(least, reach.push) == 0) return true;
-  }
-  for (int m = kFloatLanes; m < count; m += kFloatLanes) gather(m);
-  std::uint64_t near[kMost], todo = 0;
-  const float distances[2] = {reach.slight, reach.far};
-  for (const float within : distances) {
-    FloatPack least = AllFloats(reach.far);
-    WideFloats leastWide = AllWide(reach.far);
+  const std::uint64_t all = ~std::uint64_t{0} >> (kMost - count);
+  std::uint64_t todo = 0;
+  const auto look = [&](std::int32_t within) PERCALE_INLINE {
     todo = 0;
-    for (int m = 0; m < count; ++m) {
+    Ints least = AllInts(reach.far);
+    // Each point and the one `turn` members farther on, the first after the last, until all have met.
+    for (int turn = 1; turn <= count / 2; ++turn) {
       std::uint64_t bits = 0;
-      const float* const itself = kFarFromItself.squares + kMost - m;
-      int other = 0;
-      for (; other + kFloatLanes < count; other += kWideLanes) {
-        const WideFloats squares =
-            SquaredLength(AllWide(x[0][m]) - LoadWide(x[0] + other), AllWide(x[1][m]) - LoadWide(x[1] + other),
-                          AllWide(x[2][m]) - LoadWide(x[2] + other)) +
-            LoadWide(itself + other);
-        bits |= std::uint64_t{AtMost(squares, within)} << other;
-        leastWide = Least(leastWide, squares);
-      }
-      if (other < count) {
-        const FloatPack squares = SquaredDistance(alone(m), block(other)) + LoadFloats(itself + other);
-        bits |= std::uint64_t{AtMost(squares, within)} << other;
+      for (int b = 0; b < blocks; ++b) {
+        const int m = b * kPlaceLanes;
+        const Ints squares =
+            SquaredDistance(places[b], LoadPlaces(bucket.turnedXy + m + turn, bucket.turnedZ + m + turn));
+        bits |= std::uint64_t{Below(squares, within)} << m;
         least = Least(least, squares);
       }
-      near[m] = bits;
-      todo |= bits;
+      bits &= all;
+      todo |= bits | bits << turn | bits >> (count - turn);
     }
-    if ((AtMost(least, reach.deep) | AtMost(leastWide, reach.deep)) == 0) break;
-  }
+    return Below(least, reach.deep) != 0;
+  };
+  std::int32_t within = reach.slight;
+  if (look(within)) look(within = reach.far);
+  todo &= all;
   int most = 0;
   for (; todo != 0; todo &= todo - 1, ++end) {
     const int m = LowestBit(todo);
-    PutMarked(members, count, near[m], members[m], rows[end].others);
-    others[end] = BitCount(near[m]);
+    std::uint64_t near = 0;
+    const Places point = AllPlaces(bucket.xy + m, bucket.z + m);
+    for (int b = 0; b < blocks; ++b) {
+      near |= std::uint64_t{Below(SquaredDistance(point, places[b]), within)} << b * kPlaceLanes;
+    }
+    near &= all & ~(std::uint64_t{1} << m);
+    PutMarked(bucket.members, count, near, bucket.members[m], rows[end].others);
+    others[end] = BitCount(near);
     most = others[end] > most ? others[end] : most;
   }
   return most <= kMostOthers;
+}
+
+inline bool NearPoints::Find(const BucketPlaces& bucket, Reach reach) {
+  next = end = 0;
+  switch ((bucket.count - 1) / kPlaceLanes) {
+    case 0:
+      return FindIn<1>(bucket, reach);
+    case 1:
+      return FindIn<2>(bucket, reach);
+    case 2:
+      return FindIn<3>(bucket, reach);
+    case 3:
+      return FindIn<4>(bucket, reach);
+    case 4:
+      return FindIn<5>(bucket, reach);
+    case 5:
+      return FindIn<6>(bucket, reach);
+    case 6:
+      return FindIn<7>(bucket, reach);
+    default:
+      return FindIn<8>(bucket, reach);
+  }
 }
 
 /// The sum of pushes on one point.
@@ -305,32 +357,47 @@ inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
 }
 
 constexpr double kDeepShare = 0.85;  // of what points keep apart; tuned on selfCollision
-constexpr double kMostSpan = 1e9;    // m; far below the numbers that FarAfter puts into empty lanes
 
 std::int64_t SeparateBuckets(const BucketArgs& a) {
   // No point moves farther than a part in stepsPerFrame of the distance that it keeps: farther pairs than that
   // stay apart. Where no two are nearer than a share of that distance, others come nearer by some way w at most,
   // and none moves by more than (distance (1 - share) + w) / stepsPerFrame, which is w for the w below.
-  // Coordinates in float are off by 2^-24 of the span: rather look twice.
   const double farthest = a.greatestApart * (1 + 1 / a.stepsPerFrame);
   const double slight = a.stepsPerFrame > 1 ? (1 - kDeepShare) / (a.stepsPerFrame - 1) : 1;
-  const auto inFloat = [&](double distance) {
-    const double widest = distance * (1 + 1e-5) + 1e-6 * a.greatestSpan;
-    return static_cast<float>(widest * widest) + 1e-30f;  // whatever underflows
+  const auto inUnits = [&](double distance) {
+    const double units = distance / a.boxSize * (1 << kPlaceBits) + kPlaceError * Sqrt(3) + 1;
+    constexpr double kAll = 1 << 2 * (kPlaceBits + 1);  // above the square of a box's diagonal
+    return static_cast<std::int32_t>(units * units < kAll ? units * units : kAll);
   };
-  const Reach reach = {inFloat(a.greatestApart), inFloat(kDeepShare * a.greatestApart),
-                       inFloat(a.greatestApart * (1 + slight)), inFloat(farthest)};
-  const int mostNear = a.greatestSpan < kMostSpan ? NearPoints::kMost : 0;
+  const Reach reach = {inUnits(a.greatestApart), inUnits(kDeepShare * a.greatestApart),
+                       inUnits(a.greatestApart * (1 + slight)), inUnits(farthest)};
+  const int mostNear = a.place != nullptr ? BucketPlaces::kMost : 0;
   std::int64_t contacts = 0;
   PushLanes lanes;
-  int bucket = a.bucketBegin;
-  const auto fill = [&](NearPoints& lane) {  // with the next bucket that has near points
+  // What was just written reaches the cache only later: distances are looked at when the next bucket is gathered.
+  BucketPlaces taken[2];
+  int current = 0, bucket = a.bucketBegin;
+  const auto take = [&](BucketPlaces& places) {  // the next bucket whose points may be near each other
     while (bucket < a.bucketEnd) {
       const std::int32_t* members = a.members + a.first[bucket];
       const int count = a.count[bucket++];
       if (count < 2) continue;
-      if (count > mostNear || !lane.Find(a, members, count, reach)) {
+      if (count > mostNear) {
         contacts += SeparateMany(a, members, count, farthest);
+      } else if (places.Take(a, members, count, reach.push)) {
+        return true;
+      }
+    }
+    return false;
+  };
+  bool has = take(taken[current]);
+  const auto fill = [&](NearPoints& lane) {  // with the next bucket that has near points
+    while (has) {
+      const BucketPlaces& places = taken[current];
+      current = 1 - current;
+      has = take(taken[current]);
+      if (!lane.Find(places, reach)) {
+        contacts += SeparateMany(a, places.members, places.count, farthest);
         lane.end = 0;
       } else if (lane.end > 0) {
         return true;

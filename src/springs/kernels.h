@@ -105,11 +105,18 @@ struct StrainArgs {
   float budget;               ///< While no end moves farther, a spring that is not near its limit stays below it [m].
 };
 
+/// A point's place in its box has this many bits for each axis, ...
+inline constexpr int kPlaceBits = 14;
+/// ... each of which is less than this many units off.
+inline constexpr double kPlaceError = 2.5;
+
 struct BoxKeyArgs {
   int firstPoint, count;
   const double* x[3];     ///< From the first of the points on.
   double boxSize[3];      ///< [m]
   std::uint64_t* key;     ///< In and out, from the first of the points on: three box indices of 21 bits each.
+  std::uint64_t* place;   ///< Out, likewise: where the points are in their boxes, from the lower end of each axis on,
+                          ///< in 2^-kPlaceBits of the longest side of a box; 16 bits each for x, y, z and zero.
   std::int32_t* changed;  ///< Out: the points whose key is another than it was. As much room as there are points.
   std::uint8_t* wraps;    ///< Set to 1 when an index does not fit, so that far boxes may share a key.
 };
@@ -119,14 +126,16 @@ struct BucketArgs {
   int bucketBegin, bucketEnd;
   const std::int32_t* first;    ///< Per bucket: index of its first member.
   const std::int32_t* count;    ///< Per bucket: how many there are.
-  const std::int32_t* members;  ///< Indices into x, ascending within a bucket. Behind them members stand again, up to
-                                ///< a multiple of 8.
+  const std::int32_t* members;  ///< Indices into x, ascending within a bucket. Behind them stand others, up to a
+                                ///< multiple of 8 and one more.
   double* x[3];                 ///< In and out.
   const std::uint8_t* fixed;    ///< Per point: 1 for pins.
   const double* thickness;      ///< Per point [m].
   double greatestApart;         ///< No two points have a greater sum of thicknesses [m].
   bool sameThickness;           ///< Whether all pairs have that sum.
-  double greatestSpan;  ///< Within a bucket coordinates differ by no more [m]; infinite where that is not known.
+  const std::uint64_t* place;   ///< Where they are in their box (BoxKeyArgs), which those of a bucket share; null where
+                                ///< they may not.
+  double boxSize;               ///< Longest side of a box [m].
   double stepsPerFrame;
   double* scratch;       ///< 3 * (points of the largest bucket + kGridPad) doubles.
   std::int32_t* others;  ///< As many numbers as the largest bucket has points.

@@ -80,16 +80,8 @@ inline void StoreFirst3(double* const axes[3], std::int64_t at, const Pack3& a, 
   }
 }
 
-constexpr int kFloatLanes = 8;
+constexpr int kFloatLanes = 8, kPlaceLanes = 8;
 #if !defined(__AVX512F__)
-using WideFloats = FloatPack;
-constexpr int kWideLanes = kFloatLanes;
-inline WideFloats LoadWide(const float* p) {
-  return LoadFloats(p);
-}
-inline WideFloats AllWide(float s) {
-  return AllFloats(s);
-}
 inline void PutMarked(const std::int32_t* from, int, std::uint64_t bits, std::int32_t rest, std::int32_t* to) {
   constexpr int kMostly = 3;  // no more are marked
   for (int i = 0; i < 8; ++i) to[i] = rest;
@@ -101,10 +93,6 @@ inline void PutMarked(const std::int32_t* from, int, std::uint64_t bits, std::in
 struct FloatPack3 {
   FloatPack x, y, z;
 };
-template <int turn>
-inline FloatPack3 Turn(const FloatPack3& a) {
-  return {Turn<turn>(a.x), Turn<turn>(a.y), Turn<turn>(a.z)};
-}
 inline FloatPack SquaredDistance(const FloatPack3& a, const FloatPack3& b) {
   return SquaredLength(a.x - b.x, a.y - b.y, a.z - b.z);
 }

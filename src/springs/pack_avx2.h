@@ -106,11 +106,19 @@ template <int bits>
 inline Words Up(Words a) {
   return {_mm256_slli_epi64(a.v, bits)};
 }
+inline Words Quarters(Words x, Words y, Words z) {
+  const __m256i xy = _mm256_blend_epi16(_mm256_srli_epi64(x.v, 14), _mm256_slli_epi64(y.v, 2), 0x22);
+  return {_mm256_blend_epi16(xy, _mm256_slli_epi64(z.v, 18), 0x44)};
+}
+inline Words TimesQuarters(Words a, Words b) {
+  return {_mm256_mulhi_epu16(a.v, b.v)};
+}
+inline Words ExtremeQuarters(Words a) {
+  const __m256i next = _mm256_sub_epi16(a.v, _mm256_set1_epi16(-1));
+  return {_mm256_cmpeq_epi16(_mm256_min_epu16(next, _mm256_set1_epi16(1)), next)};
+}
 inline unsigned Differ(Words a, Words b) {
   return ~Bits(Mask{_mm256_castsi256_pd(_mm256_cmpeq_epi64(a.v, b.v))}) & 15;
-}
-inline Mask Lack(Words a, Words bits) {
-  return {_mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(a.v, bits.v), _mm256_setzero_si256()))};
 }
 inline Pack Gather(const double* from, const std::int32_t* index) {
   return {_mm256_setr_pd(from[index[0]], from[index[1]], from[index[2]], from[index[3]])};

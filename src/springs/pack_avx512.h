@@ -109,12 +109,22 @@ inline Words Up(Words a) {
   return {_mm512_slli_epi64(a.v, bits)};
 }
 /// One bit per lane.
+/// Bits 14 to 29 of x, y and z, side by side from the lowest bit on, and above them the two highest of x.
+inline Words Quarters(Words x, Words y, Words z) {
+  const __m512i xy = _mm512_mask_blend_epi16(0x22222222, _mm512_srli_epi64(x.v, 14), _mm512_slli_epi64(y.v, 2));
+  return {_mm512_mask_blend_epi16(0x44444444, xy, _mm512_slli_epi64(z.v, 18))};
+}
+/// The products of quarters, less their lower half.
+inline Words TimesQuarters(Words a, Words b) {
+  return {_mm512_mulhi_epu16(a.v, b.v)};
+}
+/// All bits of those quarters whose bits are all the same, else none.
+inline Words ExtremeQuarters(Words a) {
+  const __m512i next = _mm512_sub_epi16(a.v, _mm512_set1_epi16(-1));
+  return {_mm512_movm_epi16(_mm512_cmple_epu16_mask(next, _mm512_set1_epi16(1)))};
+}
 inline unsigned Differ(Words a, Words b) {
   return _mm512_cmpneq_epi64_mask(a.v, b.v);
-}
-/// Where none of those bits is set.
-inline Mask Lack(Words a, Words bits) {
-  return {_mm512_testn_epi64_mask(a.v, bits.v)};
 }
 /// from[index[lane]].
 inline Pack Gather(const double* from, const std::int32_t* index) {
@@ -174,32 +184,6 @@ inline bool QuickSqrt(const Pack a[6], Pack roots[6]) {
   return true;
 }
 
-/// Sixteen floats for tests that only rule out; elsewhere the eight of floats_avx2.h.
-struct WideFloats {
-  __m512 v;
-};
-constexpr int kWideLanes = 16;
-inline WideFloats LoadWide(const float* p) {
-  return {_mm512_loadu_ps(p)};
-}
-inline WideFloats AllWide(float s) {
-  return {_mm512_set1_ps(s)};
-}
-inline WideFloats operator+(WideFloats a, WideFloats b) {
-  return {_mm512_add_ps(a.v, b.v)};
-}
-inline WideFloats operator-(WideFloats a, WideFloats b) {
-  return {_mm512_sub_ps(a.v, b.v)};
-}
-inline WideFloats Least(WideFloats a, WideFloats b) {
-  return {_mm512_min_ps(a.v, b.v)};
-}
-inline WideFloats SquaredLength(WideFloats x, WideFloats y, WideFloats z) {
-  return {_mm512_fmadd_ps(x.v, x.v, _mm512_fmadd_ps(y.v, y.v, _mm512_mul_ps(z.v, z.v)))};
-}
-inline unsigned AtMost(WideFloats a, float bound) {
-  return _mm512_cmp_ps_mask(a.v, _mm512_set1_ps(bound), _CMP_LE_OQ);
-}
 /// Those of the first `count` numbers that have a bit, in order, and behind them `rest`, up to eight numbers.
 /// More than eight need not be right; room for `count` and for eight is written to.
 inline void PutMarked(const std::int32_t* from, int count, std::uint64_t bits, std::int32_t rest, std::int32_t* to) {

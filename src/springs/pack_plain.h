@@ -114,12 +114,26 @@ template <int bits>
 inline Words Up(Words a) {
   return EachWord([&](int i) { return a.v[i] << bits; });
 }
+template <class F>
+inline Words EachQuarter(F f) {
+  return EachWord([&](int i) { return f(i, 0) | f(i, 16) << 16 | f(i, 32) << 32 | f(i, 48) << 48; });
+}
+inline Words Quarters(Words x, Words y, Words z) {
+  return EachWord([&](int i) {
+    return (x.v[i] >> 14 & 0xffff) | (y.v[i] >> 14 & 0xffff) << 16 | (z.v[i] >> 14 & 0xffff) << 32 | x.v[i] >> 62 << 48;
+  });
+}
+inline Words TimesQuarters(Words a, Words b) {
+  return EachQuarter([&](int i, int at) { return (a.v[i] >> at & 0xffff) * (b.v[i] >> at & 0xffff) >> 16; });
+}
+inline Words ExtremeQuarters(Words a) {
+  return EachQuarter([&](int i, int at) {
+    const std::uint64_t quarter = a.v[i] >> at & 0xffff;
+    return quarter == 0 || quarter == 0xffff ? std::uint64_t{0xffff} : std::uint64_t{0};
+  });
+}
 inline unsigned Differ(Words a, Words b) {
   return Bits(Mask{{a.v[0] != b.v[0], a.v[1] != b.v[1], a.v[2] != b.v[2], a.v[3] != b.v[3]}});
-}
-inline Mask Lack(Words a, Words bits) {
-  const Words set = a & bits;
-  return {{set.v[0] == 0, set.v[1] == 0, set.v[2] == 0, set.v[3] == 0}};
 }
 inline Pack Gather(const double* from, const std::int32_t* index) {
   return Each([&](int i) { return from[index[i]]; });
@@ -179,13 +193,6 @@ inline unsigned Bits(FloatMask m) {
   for (int i = 0; i < 8; ++i) bits |= (m.v[i] ? 1u : 0u) << i;
   return bits;
 }
-template <int turn>
-inline FloatPack Turn(FloatPack a) {
-  return EachFloat([&](int i) { return a.v[(i + turn) % 8]; });
-}
-inline FloatPack Least(FloatPack a, FloatPack b) {
-  return EachFloat([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
-}
 inline FloatPack Greatest(FloatPack a, FloatPack b) {
   return EachFloat([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
 }
@@ -200,9 +207,79 @@ inline unsigned AtMost(FloatPack a, float bound) {
   for (int i = 0; i < 8; ++i) bits |= (a.v[i] <= bound ? 1u : 0u) << i;
   return bits;
 }
-inline FloatPack GatherFloats(const double* from, const std::int32_t* index, double origin) {
-  return EachFloat([&](int i) { return static_cast<float>(from[index[i]] - origin); });
+
+struct Places {
+  std::int32_t xy[8], z[8];
+};
+struct Ints {
+  std::int32_t v[8];
+};
+inline Places GatherPlaces(const std::uint64_t* from, const std::int32_t* index) {
+  Places a;
+  for (int i = 0; i < 8; ++i) {
+    a.xy[i] = static_cast<std::int32_t>(from[index[i]]);
+    a.z[i] = static_cast<std::int32_t>(from[index[i]] >> 32);
+  }
+  return a;
 }
-inline FloatPack FarAfter(int count, FloatPack a) {
-  return EachFloat([&](int i) { return i < count ? a.v[i] : 1e15f * static_cast<float>(i + 1); });
+inline Places AllPlaces(const std::int32_t* xy, const std::int32_t* z) {
+  Places a;
+  for (int i = 0; i < 8; ++i) a.xy[i] = *xy, a.z[i] = *z;
+  return a;
+}
+inline Places AllPlaces(std::uint64_t place) {
+  const auto xy = static_cast<std::int32_t>(place), z = static_cast<std::int32_t>(place >> 32);
+  return AllPlaces(&xy, &z);
+}
+inline void StorePlaces(std::int32_t* xy, std::int32_t* z, Places a) {
+  for (int i = 0; i < 8; ++i) xy[i] = a.xy[i], z[i] = a.z[i];
+}
+inline Places LoadPlaces(const std::int32_t* xy, const std::int32_t* z) {
+  Places a;
+  for (int i = 0; i < 8; ++i) a.xy[i] = xy[i], a.z[i] = z[i];
+  return a;
+}
+inline Places FirstPlaces(int count, Places a) {
+  constexpr std::int32_t kApart = 1 << 29;
+  constexpr std::int32_t kBeyond[8] = {kApart,     kApart,      kApart,      2 * kApart,
+                                       3 * kApart, -4 * kApart, -3 * kApart, -2 * kApart};
+  for (int i = 0; i < 8; ++i) a.z[i] |= i < count ? 0 : kBeyond[i];
+  return a;
+}
+template <int turn>
+inline Places Turn(Places a) {
+  Places turned;
+  for (int i = 0; i < 8; ++i) turned.xy[i] = a.xy[(i + turn) % 8], turned.z[i] = a.z[(i + turn) % 8];
+  return turned;
+}
+/// The sum of the squares of the differences of both halves, which come round.
+inline std::int32_t SquaredHalves(std::int32_t a, std::int32_t b) {
+  const auto low = static_cast<std::int16_t>(a - b), high = static_cast<std::int16_t>((a >> 16) - (b >> 16));
+  return low * low + high * high;
+}
+inline Ints SquaredDistance(Places a, Places b) {
+  Ints squares;
+  for (int i = 0; i < 8; ++i) squares.v[i] = SquaredHalves(a.xy[i], b.xy[i]) + SquaredHalves(a.z[i], b.z[i]);
+  return squares;
+}
+inline Ints AllInts(std::int32_t s) {
+  return {{s, s, s, s, s, s, s, s}};
+}
+inline Ints Least(Ints a, Ints b) {
+  for (int i = 0; i < 8; ++i) a.v[i] = a.v[i] < b.v[i] ? a.v[i] : b.v[i];
+  return a;
+}
+inline unsigned Below(Ints a, std::int32_t bound) {
+  unsigned bits = 0;
+  for (int i = 0; i < 8; ++i) bits |= (a.v[i] < bound ? 1u : 0u) << i;
+  return bits;
+}
+inline Ints PlusBelow(Ints counts, Ints a, std::int32_t bound) {
+  for (int i = 0; i < 8; ++i) counts.v[i] += a.v[i] < bound ? 1 : 0;
+  return counts;
+}
+inline int Sum(Ints a) {
+  int sum = 0;
+  for (const int v : a.v) sum += v;
+  return sum;
 }

@@ -62,6 +62,7 @@ SpringsEngine::SpringsEngine(const Scene& scene, std::span<const ClothModel> mod
   fixed_.assign(count, 0);
   touched_.reserve(count);
   boxKeys_.resize(count);
+  boxPlaces_.resize(count);
   boxChanges_.resize(count);
   boxesWrap_.assign(Index(PointChunks()), 0);
   thickness_.resize(count);
@@ -301,6 +302,7 @@ void SpringsEngine::FindContacts() {
                                 {positions_[0] + begin, positions_[1] + begin, positions_[2] + begin},
                                 {boxSize_.x, boxSize_.y, boxSize_.z},
                                 boxKeys_.data() + begin,
+                                boxPlaces_.data() + begin,
                                 boxChanges_.data() + begin,
                                 &boxesWrap_[Index(chunk)]})
             : HashKeys(begin, end);
@@ -361,7 +363,8 @@ void SpringsEngine::SelfCollide() {
     args.thickness = thickness_.data();
     args.greatestApart = greatestApart_;
     args.sameThickness = sameThickness_;
-    args.greatestSpan = near ? boxSize_.z : kInfinity;
+    args.place = near ? boxPlaces_.data() : nullptr;
+    args.boxSize = boxSize_.z;
     args.stepsPerFrame = scene_.simulation.stepsPerFrame;
     // No bucket of a chunk has more points than the chunk.
     args.scratch = bucketScratch_.data() + 3 * (bucketChunks_[Index(chunk)].pointsBefore + kGridPad * chunk);

@@ -146,6 +146,7 @@ class SpringsEngine {
   std::vector<std::uint8_t> fixed_;  // per point
   std::vector<double> thickness_;    // per point [m]
   std::vector<std::uint64_t> boxKeys_;
+  std::vector<std::uint64_t> boxPlaces_;  // where points are in their boxes, for HashFunction::Exact
   std::vector<std::int32_t> boxChanges_;  // points whose box changed: per chunk of points, from its first on
   std::vector<std::uint8_t> boxesWrap_;   // per chunk of points: whether box indices did not fit since the start
   bool mapBuilt_ = false;

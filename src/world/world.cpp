@@ -57,10 +57,10 @@ ClothModel MakeModel(const ClothSettings& settings, Engine engine) {
   return model;
 }
 
-/// Of points that were at `previous` a step of `dt` [s] before; `velocities` may be the same as that.
-void ComputeVelocities(std::span<const Vec3> positions, std::span<const Vec3> previous, double dt,
+/// Of points that were at `previous` one step before; `velocities` may be the same as that.
+void ComputeVelocities(std::span<const Vec3> positions, std::span<const Vec3> previous, double stepsPerSecond,
                        std::span<Vec3> velocities) {
-  for (std::size_t v = 0; v < positions.size(); ++v) velocities[v] = (positions[v] - previous[v]) / dt;
+  for (std::size_t v = 0; v < positions.size(); ++v) velocities[v] = (positions[v] - previous[v]) * stepsPerSecond;
 }
 
 }  // namespace
@@ -218,7 +218,7 @@ bool World::Impl::AskForces() {
     stepPositions.resize(count);
     stepVelocities.resize(count);
     engine->readState(engineState.get(), cloth, stepPositions, stepVelocities);
-    ComputeVelocities(stepPositions, stepVelocities, dt, stepVelocities);
+    ComputeVelocities(stepPositions, stepVelocities, 1 / dt, stepVelocities);
     cloths[c].forces.assign(count, Vec3{});
     forces({cloth, report.time - dt, stepPositions, stepVelocities, cloths[c].forces});
     for (std::size_t v = 0; v < count; ++v) {
@@ -237,12 +237,12 @@ void World::Impl::ReadState() {
     Cloth& cloth = cloths[c];
     std::vector<Vec3>& now = cloth.velocities;  // for a moment
     engine->readState(engineState.get(), static_cast<int>(c), now, cloth.previous);
-    const double dt = scene->TimeStep();
+    const double stepsPerSecond = 1 / scene->TimeStep();
     for (std::size_t v = 0; v < now.size(); ++v) {  // once, since large cloths come from far away
       const Vec3 at = now[v], way = at - cloth.positions[v];
       move = std::max(move, Dot(way, way));
       cloth.positions[v] = at;
-      cloth.velocities[v] = (at - cloth.previous[v]) / dt;
+      cloth.velocities[v] = (at - cloth.previous[v]) * stepsPerSecond;
     }
   }
   report.greatestMove = std::sqrt(move);
@@ -441,7 +441,7 @@ void World::Restore(const WorldState& state) {
     cloth.positions = state.cloths[c].positions;
     cloth.previous = state.cloths[c].previous;
     w.engine->writeState(w.engineState.get(), static_cast<int>(c), state.cloths[c], state.report.time);
-    ComputeVelocities(cloth.positions, cloth.previous, w.scene->TimeStep(), cloth.velocities);
+    ComputeVelocities(cloth.positions, cloth.previous, 1 / w.scene->TimeStep(), cloth.velocities);
   }
   w.engine->writeContact(w.engineState.get(), state.touches, state.obstacles);
   w.engine->takeCounts(w.engineState.get());

@@ -26,7 +26,8 @@ constexpr double kMostBoxes = 0x1p20;  // from the origin; farther away box indi
 
 /// Points and their keys, and what a kernel says that changed.
 struct Boxes {
-  Boxes(int count, const double (&size)[3]) : x(2, count), key(At(count), ~std::uint64_t{0}), changed(At(count)) {
+  Boxes(int count, const double (&size)[3])
+      : x(2, count), key(At(count), ~std::uint64_t{0}), place(At(count)), changed(At(count)) {
     std::copy_n(size, 3, boxSize);
   }
 
@@ -39,7 +40,15 @@ struct Boxes {
     return result;
   }
 
-  /// Brings the keys up to date; what is wrong with them, or nothing.
+  /// How far a point is from the lower end of its box along an axis, in units of places, beyond what its place says.
+  double PlaceError(std::int64_t point, int axis) const {
+    const double longest = *std::max_element(boxSize, boxSize + 3);
+    const double at = x(axis, point) / boxSize[axis];
+    const auto told = static_cast<double>(place[At(point)] >> 16 * axis & 0xffff);
+    return (at - std::floor(at)) * boxSize[axis] / longest * (1 << kPlaceBits) - told;
+  }
+
+  /// Brings the keys and places up to date; what is wrong with them, or nothing.
   std::string Fault(const Kernels& kernels) {
     constexpr int kFirst = 100;
     const std::vector<std::uint64_t> before = key;
@@ -49,6 +58,7 @@ struct Boxes {
     args.count = x.size;
     for (int axis = 0; axis < 3; ++axis) args.x[axis] = x.axis(axis), args.boxSize[axis] = boxSize[axis];
     args.key = key.data();
+    args.place = place.data();
     args.changed = changed.data();
     args.wraps = &wraps;
     const std::int64_t count = kernels.boxKeys(args);
@@ -63,8 +73,11 @@ struct Boxes {
         return text;
       }
       const bool changes = expected != before[At(p)];
+      if (place[At(p)] >> 48 != 0) return "a place that is more than three numbers";
       for (int axis = 0; axis < 3; ++axis) {
         const double index = std::floor(x(axis, p) / boxSize[axis]);
+        const double error = PlaceError(p, axis);
+        if (std::abs(index) < kMostBoxes && !(error > -0.01 && error < kPlaceError)) return "a place that is wrong";
         far = far || (changes && (index >= kMostBoxes || index < -kMostBoxes));
         near = near && std::abs(index) < kMostBoxes - 1;
       }
@@ -79,7 +92,7 @@ struct Boxes {
   }
 
   Axes x;
-  std::vector<std::uint64_t> key;
+  std::vector<std::uint64_t> key, place;
   std::vector<std::int32_t> changed;
   double boxSize[3];
   std::uint8_t wraps = 0;
@@ -204,7 +217,7 @@ struct Buckets {
       first.push_back(static_cast<std::int32_t>(members.size()));
       members.resize(members.size() + At(size) + 2, 0);  // buckets need not lie side by side
     }
-    members.resize(members.size() + 8, 0);
+    members.resize(members.size() + 9, 0);
     fixed.assign(At(x.size), 0);
     thickness.assign(At(x.size), 0);
     mostPoints = sizes.empty() ? 0 : *std::max_element(sizes.begin(), sizes.end());
@@ -230,7 +243,27 @@ struct Buckets {
     }
   }
 
+  /// Where each point is in a box of the size `span` that holds its bucket: to within what is allowed, and mostly not
+  /// better.
+  std::vector<std::uint64_t> Places() const {
+    std::vector<std::uint64_t> places(At(x.size));
+    for (std::size_t b = 0; b < count.size(); ++b) {
+      for (int axis = 0; axis < 3; ++axis) {
+        double corner = kInfinity;
+        for (int m = 0; m < count[b]; ++m) corner = std::min(corner, x(axis, Member(b, m)));
+        for (int m = 0; m < count[b]; ++m) {
+          const std::int32_t p = Member(b, m);
+          const double units = (x(axis, p) - corner) / span * (1 << kPlaceBits), less = 0.7 * ((p + axis) % 3);
+          const double told = std::clamp(std::floor(units - less), 0.0, (1 << kPlaceBits) - 1.0);
+          places[At(p)] |= static_cast<std::uint64_t>(told) << 16 * axis;
+        }
+      }
+    }
+    return places;
+  }
+
   std::int64_t Separate(const Kernels& kernels) {
+    const std::vector<std::uint64_t> places = span < kInfinity ? Places() : std::vector<std::uint64_t>{};
     std::vector<double> scratch(3 * At(mostPoints + kGridPad));
     std::vector<std::int32_t> others(At(mostPoints));
     BucketArgs args{};
@@ -245,7 +278,8 @@ struct Buckets {
     const auto [least, most] = std::minmax_element(thickness.begin(), thickness.end());
     args.greatestApart = 2 * *most;
     args.sameThickness = *least == *most;
-    args.greatestSpan = span;
+    args.place = span < kInfinity ? places.data() : nullptr;
+    args.boxSize = span;
     args.stepsPerFrame = stepsPerFrame;
     args.scratch = scratch.data();
     args.others = others.data();
