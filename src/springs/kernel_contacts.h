@@ -127,6 +127,7 @@ inline bool BucketPlaces::Take(const BucketArgs& a, const std::int32_t* bucket, 
   if (count <= kPlaceLanes + 1) {
     Ints least = Least(Least(SquaredDistance(points, Turn<1>(points)), SquaredDistance(points, Turn<2>(points))),
                        Least(SquaredDistance(points, Turn<3>(points)), SquaredDistance(points, Turn<4>(points))));
+    // The ninth, or what is as far from all as the lanes that FirstPlaces fills.
     const std::uint64_t beyond = count > kPlaceLanes ? 0 : std::uint64_t{0xe000} << 48;
     least = Least(least, SquaredDistance(points, AllPlaces(a.place[members[kPlaceLanes]] | beyond)));
     if (Below(least, push) == 0) return false;
@@ -145,34 +146,28 @@ inline bool BucketPlaces::Take(const BucketArgs& a, const std::int32_t* bucket, 
 
 /// Which points of a bucket may come too close to which others while they move.
 struct NearPoints {
-  static constexpr int kMost = BucketPlaces::kMost, kMostOthers = 7;
-  /// A point that is near others: these in order, and then itself.
-  struct alignas(32) Row {
-    std::int32_t others[kMostOthers], point;
-  };
-  Row rows[kMost + kMost / (kMostOthers + 1)];  // PutMarked writes farther than a row
-  int others[kMost];                            // per row, how many there are
-  int next = 0, end = 0;                        // rows whose points did not move yet
+  const std::int32_t* members;
+  std::uint64_t near[BucketPlaces::kMost];  // per member a bit for each other that is near it
+  std::uint64_t todo = 0;                   // a bit for each that is near others, and did not move yet
 
-  /// Returns false when a point is near more others than a row can hold.
-  bool Find(const BucketPlaces& bucket, Reach reach);
+  void Find(const BucketPlaces& bucket, Reach reach);
 
  private:
+  /// For buckets of so many blocks, which are unrolled: loops of many lengths would be foretold badly.
   template <int blocks>
-  bool FindIn(const BucketPlaces& bucket, Reach reach);
+  void FindIn(const BucketPlaces& bucket, Reach reach);
 };
 
-/// The same for a bucket of so many blocks, which are unrolled: loops of many lengths would be foretold badly.
 template <int blocks>
-inline bool NearPoints::FindIn(const BucketPlaces& bucket, Reach reach) {
+inline void NearPoints::FindIn(const BucketPlaces& bucket, Reach reach) {
   const int count = bucket.count;
   Places places[blocks];
   for (int b = 0; b < blocks; ++b) places[b] = LoadPlaces(bucket.xy + b * kPlaceLanes, bucket.z + b * kPlaceLanes);
 
-  const std::uint64_t all = ~std::uint64_t{0} >> (kMost - count);
-  std::uint64_t todo = 0;
+  const std::uint64_t all = ~std::uint64_t{0} >> (BucketPlaces::kMost - count);
+  std::uint64_t found = 0;
   const auto look = [&](std::int32_t within) PERCALE_INLINE {
-    todo = 0;
+    found = 0;
     Ints least = AllInts(reach.far);
     // Each point and the one `turn` members farther on, the first after the last, until all have met.
     for (int turn = 1; turn <= count / 2; ++turn) {
@@ -185,31 +180,26 @@ inline bool NearPoints::FindIn(const BucketPlaces& bucket, Reach reach) {
         least = Least(least, squares);
       }
       bits &= all;
-      todo |= bits | bits << turn | bits >> (count - turn);
+      found |= bits | bits << turn | bits >> (count - turn);
     }
     return Below(least, reach.deep) != 0;
   };
   std::int32_t within = reach.slight;
   if (look(within)) look(within = reach.far);
-  todo &= all;
-  int most = 0;
-  for (; todo != 0; todo &= todo - 1, ++end) {
-    const int m = LowestBit(todo);
-    std::uint64_t near = 0;
+  members = bucket.members;
+  todo = found & all;
+  for (std::uint64_t left = todo; left != 0; left &= left - 1) {
+    const int m = LowestBit(left);
     const Places point = AllPlaces(bucket.xy + m, bucket.z + m);
+    std::uint64_t bits = 0;
     for (int b = 0; b < blocks; ++b) {
-      near |= std::uint64_t{Below(SquaredDistance(point, places[b]), within)} << b * kPlaceLanes;
+      bits |= std::uint64_t{Below(SquaredDistance(point, places[b]), within)} << b * kPlaceLanes;
     }
-    near &= all & ~(std::uint64_t{1} << m);
-    PutMarked(bucket.members, count, near, bucket.members[m], rows[end].others);
-    others[end] = BitCount(near);
-    most = others[end] > most ? others[end] : most;
+    near[m] = bits & all & ~(std::uint64_t{1} << m);
   }
-  return most <= kMostOthers;
 }
 
-inline bool NearPoints::Find(const BucketPlaces& bucket, Reach reach) {
-  next = end = 0;
+inline void NearPoints::Find(const BucketPlaces& bucket, Reach reach) {
   switch ((bucket.count - 1) / kPlaceLanes) {
     case 0:
       return FindIn<1>(bucket, reach);
@@ -305,32 +295,40 @@ struct PushLanes {
 };
 
 inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
-  constexpr int kPoint = NearPoints::kMostOthers;  // in a row
   // Lanes that have none left take a point that no other thread has: the first lane was filled first.
-  NearPoints::Row idle;
-  idle.point = buckets[0].rows[0].point;
-  for (std::int32_t& other : idle.others) other = idle.point;
-  const std::int32_t* rows[kLanes];
-  int count[kLanes], most = 0, total = 0;
+  const std::int32_t* members[kLanes];
+  std::uint64_t itself[kLanes], others[kLanes];  // bits
+  std::int32_t point[kLanes];
+  int most = 0, total = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
     NearPoints& bucket = buckets[lane];
-    const bool any = bucket.next < bucket.end;
-    rows[lane] = any ? bucket.rows[bucket.next].others : idle.others;
-    count[lane] = any ? bucket.others[bucket.next] : 0;
-    bucket.next += any ? 1 : 0;
-    most = count[lane] > most ? count[lane] : most;
-    total += count[lane];
+    const bool any = bucket.todo != 0;
+    const int m = any ? LowestBit(bucket.todo) : 0;
+    bucket.todo &= bucket.todo - 1;
+    members[lane] = any ? bucket.members : buckets[0].members;
+    itself[lane] = std::uint64_t{1} << m;
+    others[lane] = any ? bucket.near[m] : 0;
+    point[lane] = members[lane][m];
+    const int count = BitCount(others[lane]);
+    most = count > most ? count : most;
+    total += count;
   }
 
-  const Pack3 x = GatherRows3(a.x, rows, kPoint);
+  const Pack3 x = Gather3(a.x, point);
   Pack3 sum = Zero3();
   Pack pushed = All(0);
   int same = 0;
+  std::uint64_t left[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) left[lane] = others[lane];
   for (int k = 0; k < most; ++k) {
-    const Pack3 d = x - GatherRows3(a.x, rows, k);
+    std::int32_t other[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      other[lane] = members[lane][LowestBit(left[lane] != 0 ? left[lane] : itself[lane])];
+      left[lane] &= left[lane] - 1;
+    }
+    const Pack3 d = x - Gather3(a.x, other);
     const Pack distance = Sqrt(SquaredLength(d));
-    const Pack apart = a.sameThickness ? All(a.greatestApart)
-                                       : GatherRows(a.thickness, rows, kPoint) + GatherRows(a.thickness, rows, k);
+    const Pack apart = a.sameThickness ? All(a.greatestApart) : Gather(a.thickness, point) + Gather(a.thickness, other);
     const Mask valid = distance > All(0);  // else it is the point itself, or one that coincides with it
     same += kLanes - BitCount(Bits(valid));
     const Mask push = valid & (distance <= apart);
@@ -339,7 +337,13 @@ inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
   }
   if (same != most * kLanes - total) {  // some coincide
     std::int64_t contacts = 0;
-    for (int lane = 0; lane < kLanes; ++lane) contacts += PushApart(a, rows[lane][kPoint], rows[lane], count[lane]);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      std::int32_t near[BucketPlaces::kMost];
+      int count = 0;
+      for (std::uint64_t bits = others[lane]; bits != 0; bits &= bits - 1)
+        near[count++] = members[lane][LowestBit(bits)];
+      contacts += PushApart(a, point[lane], near, count);
+    }
     return contacts;
   }
   pushes = pushes + pushed;
@@ -349,9 +353,8 @@ inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
   double lanes[3][kLanes];
   Store(lanes[0], to.x), Store(lanes[1], to.y), Store(lanes[2], to.z);
   for (int lane = 0; lane < kLanes; ++lane) {
-    const std::int32_t point = rows[lane][kPoint];
-    if (count[lane] == 0 || a.fixed[point]) continue;
-    for (int axis = 0; axis < 3; ++axis) a.x[axis][point] = lanes[axis][lane];
+    if (others[lane] == 0 || a.fixed[point[lane]]) continue;
+    for (int axis = 0; axis < 3; ++axis) a.x[axis][point[lane]] = lanes[axis][lane];
   }
   return 0;
 }
@@ -396,18 +399,14 @@ std::int64_t SeparateBuckets(const BucketArgs& a) {
       const BucketPlaces& places = taken[current];
       current = 1 - current;
       has = take(taken[current]);
-      if (!lane.Find(places, reach)) {
-        contacts += SeparateMany(a, places.members, places.count, farthest);
-        lane.end = 0;
-      } else if (lane.end > 0) {
-        return true;
-      }
+      lane.Find(places, reach);
+      if (lane.todo != 0) return true;
     }
     return false;
   };
   for (bool any = true; any;) {
     any = false;
-    for (NearPoints& lane : lanes.buckets) any |= lane.next < lane.end || fill(lane);
+    for (NearPoints& lane : lanes.buckets) any |= lane.todo != 0 || fill(lane);
     if (any) contacts += lanes.Turn(a);
   }
   double pushes[kLanes];

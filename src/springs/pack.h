@@ -20,17 +20,6 @@ inline Pack3 Load3(const double* const axes[3], std::int64_t at) {
 inline Pack3 Gather3(const double* const axes[3], const std::int32_t* index) {
   return {Gather(axes[0], index), Gather(axes[1], index), Gather(axes[2], index)};
 }
-/// from[rows[lane][k]].
-inline Pack GatherRows(const double* from, const std::int32_t* const rows[kLanes], int k) {
-  std::int32_t index[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) index[lane] = rows[lane][k];
-  return Gather(from, index);
-}
-inline Pack3 GatherRows3(const double* const axes[3], const std::int32_t* const rows[kLanes], int k) {
-  std::int32_t index[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) index[lane] = rows[lane][k];
-  return Gather3(axes, index);
-}
 inline void Store3(double* const axes[3], std::int64_t at, const Pack3& a) {
   Store(axes[0] + at, a.x), Store(axes[1] + at, a.y), Store(axes[2] + at, a.z);
 }
@@ -81,14 +70,6 @@ inline void StoreFirst3(double* const axes[3], std::int64_t at, const Pack3& a, 
 }
 
 constexpr int kFloatLanes = 8, kPlaceLanes = 8;
-#if !defined(__AVX512F__)
-inline void PutMarked(const std::int32_t* from, int, std::uint64_t bits, std::int32_t rest, std::int32_t* to) {
-  constexpr int kMostly = 3;  // no more are marked
-  for (int i = 0; i < 8; ++i) to[i] = rest;
-  for (int i = 0; i < kMostly; ++i, bits &= bits - 1) to[i] = bits != 0 ? from[LowestBit(bits)] : rest;
-  for (int i = kMostly; i < 8 && bits != 0; ++i, bits &= bits - 1) to[i] = from[LowestBit(bits)];
-}
-#endif
 
 struct FloatPack3 {
   FloatPack x, y, z;

@@ -183,15 +183,3 @@ inline bool QuickSqrt(const Pack a[6], Pack roots[6]) {
   for (int s = 0; s < kQuick; ++s) roots[s] = {_mm512_fmadd_pd(error[s], halfInverse[s], root[s])};
   return true;
 }
-
-/// Those of the first `count` numbers that have a bit, in order, and behind them `rest`, up to eight numbers.
-/// More than eight need not be right; room for `count` and for eight is written to.
-inline void PutMarked(const std::int32_t* from, int count, std::uint64_t bits, std::int32_t rest, std::int32_t* to) {
-  for (int base = 0; base < count; base += 16, bits >>= 16) {
-    const auto mask = static_cast<__mmask16>(bits);
-    const __m512i marked =
-        _mm512_mask_compress_epi32(_mm512_set1_epi32(rest), mask, _mm512_maskz_loadu_epi32(mask, from + base));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_castsi512_si256(marked));
-    to += BitCount(mask);
-  }
-}
