@@ -4,12 +4,14 @@
 #include <cassert>
 
 #include "core/index.h"
+#include "core/prefetch.h"
 
 namespace percale {
 
 namespace {
 
 constexpr int kSmallestTable = 6;  // bits
+constexpr int kAhead = 4;          // points that change their bucket: so early what they need is asked for
 constexpr int kMostEmpty = 5;      // at most one bucket of that many is empty: readers stumble over them
 // Room of a bucket: more than its members, so that few outgrow it; and the padding.
 constexpr std::int32_t Room(std::int32_t members) {
@@ -60,10 +62,15 @@ void BoxMap::SetCount(std::size_t bucket, std::int32_t count) {
   std::fill_n(members + count, kPadding, members[0]);
 }
 
+/// Where a key goes, unless others are there.
+std::size_t BoxMap::FirstSlot(std::uint64_t key) const {
+  return Index(static_cast<std::int64_t>((key * 0x9e3779b97f4a7c15u) >> (64 - tableBits_)));
+}
+
 /// Where the key is, or the empty slot where it goes.
 BoxMap::Slot& BoxMap::FindSlot(std::uint64_t key) {
   const std::size_t mask = (std::size_t{1} << tableBits_) - 1;
-  std::size_t at = Index(static_cast<std::int64_t>((key * 0x9e3779b97f4a7c15u) >> (64 - tableBits_)));
+  std::size_t at = FirstSlot(key);
   while (table_[at].build == build_ && table_[at].key != key) at = (at + 1) & mask;
   return table_[at];
 }
@@ -102,9 +109,15 @@ void BoxMap::Update(std::span<const std::uint64_t> keys, std::span<const std::in
     Build(keys);
     return;
   }
-  for (const std::int32_t point : changed) {
-    Remove(bucketOf_[Index(point)], point);
-    if (!Insert(keys[Index(point)], point)) {
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const std::size_t point = Index(changed[i]);
+    if (i + kAhead < changed.size()) {
+      const std::size_t later = Index(changed[i + kAhead]);
+      Prefetch(&members_[Index(first_[Index(bucketOf_[later])])]);
+      Prefetch(&table_[FirstSlot(keys[later])]);
+    }
+    Remove(bucketOf_[point], changed[i]);
+    if (!Insert(keys[point], changed[i])) {
       Build(keys);
       return;
     }

@@ -3,6 +3,7 @@
 /// A spatial map: points grouped by the key of their box, as a grid in a few arrays. Points that change
 /// their box move from bucket to bucket; nothing allocates after `Reserve`.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -42,6 +43,7 @@ class BoxMap {
   };
 
   bool FindBuckets(std::span<const std::uint64_t> keys);
+  std::size_t FirstSlot(std::uint64_t key) const;
   Slot& FindSlot(std::uint64_t key);
   void Remove(std::int32_t bucket, std::int32_t point);
   bool Insert(std::uint64_t key, std::int32_t point);
