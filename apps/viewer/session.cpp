@@ -134,9 +134,10 @@ void Session::FollowHand() {
     const Vec3& at = copy.positions[vertex];
     handle.target = LeadOf(handle, at, hand_);
     const ClothTopology& topology = *copy.topology;
-    if (std::binary_search(topology.pinned.begin(), topology.pinned.end(), handle.vertex))
+    if (std::binary_search(topology.pinned.begin(), topology.pinned.end(), handle.vertex)) {
       handle.target =
           at + CarriedWay(handle.vertex, handle.target - at, copy.positions, topology.springs, topology.restLengths);
+    }
   }
   if (handle == handles_[0] || Check(handle)) return;  // the same, or beyond the world
   handles_ = {handle};

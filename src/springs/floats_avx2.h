@@ -89,7 +89,7 @@ inline Places AllPlaces(const std::int32_t* xy, const std::int32_t* z) {
 /// The first `count` lanes, which is 2 at least; the others are 2^13 or more from these, and from each other, in a
 /// fourth dimension.
 inline Places FirstPlaces(int count, Places a) {
-  constexpr int kApart = 1 << 29;  // 2^16 / 7: differences come round
+  constexpr int kApart = 1 << 29;  // 2^13 in the upper half, where differences come round: there are eight such places
   const __m256i beyond =
       _mm256_setr_epi32(kApart, kApart, kApart, 2 * kApart, 3 * kApart, -4 * kApart, -3 * kApart, -2 * kApart);
   const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
@@ -120,13 +120,4 @@ inline Ints Least(Ints a, Ints b) {
 inline unsigned Below(Ints a, std::int32_t bound) {
   return static_cast<unsigned>(
       _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(_mm256_set1_epi32(bound), a.v))));
-}
-/// Counts, per lane, how often one is below the bound.
-inline Ints PlusBelow(Ints counts, Ints a, std::int32_t bound) {
-  return {_mm256_sub_epi32(counts.v, _mm256_cmpgt_epi32(_mm256_set1_epi32(bound), a.v))};
-}
-inline int Sum(Ints a) {
-  const __m128i four = _mm_add_epi32(_mm256_castsi256_si128(a.v), _mm256_extracti128_si256(a.v, 1));
-  const __m128i two = _mm_add_epi32(four, _mm_shuffle_epi32(four, 0x4e));
-  return _mm_cvtsi128_si32(_mm_add_epi32(two, _mm_shuffle_epi32(two, 0xb1)));
 }

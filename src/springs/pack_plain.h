@@ -254,7 +254,8 @@ inline Places Turn(Places a) {
 }
 /// The sum of the squares of the differences of both halves, which come round.
 inline std::int32_t SquaredHalves(std::int32_t a, std::int32_t b) {
-  const auto low = static_cast<std::int16_t>(a - b), high = static_cast<std::int16_t>((a >> 16) - (b >> 16));
+  const auto low = static_cast<std::int16_t>((a & 0xffff) - (b & 0xffff));
+  const auto high = static_cast<std::int16_t>((a >> 16) - (b >> 16));
   return low * low + high * high;
 }
 inline Ints SquaredDistance(Places a, Places b) {
@@ -273,13 +274,4 @@ inline unsigned Below(Ints a, std::int32_t bound) {
   unsigned bits = 0;
   for (int i = 0; i < 8; ++i) bits |= (a.v[i] < bound ? 1u : 0u) << i;
   return bits;
-}
-inline Ints PlusBelow(Ints counts, Ints a, std::int32_t bound) {
-  for (int i = 0; i < 8; ++i) counts.v[i] += a.v[i] < bound ? 1 : 0;
-  return counts;
-}
-inline int Sum(Ints a) {
-  int sum = 0;
-  for (const int v : a.v) sum += v;
-  return sum;
 }
