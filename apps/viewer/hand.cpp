@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/viewer/hand_tools.h"
 #include "apps/viewer/session.h"
 #include "collide/poses.h"
 #include "mesh/vertex_cache.h"
@@ -325,8 +326,7 @@ void Hand::Follow(Session& session) {
   Vec3 place = *goal_;
   if (session.playback().running()) {
     if (!session.playback().caughtUp()) return;
-    const Vec3 from = PlaceOf(*selected, session), way = place - from;
-    if (Length(way) > kColliderLead) place = from + way * (kColliderLead / Length(way));
+    place = Towards(PlaceOf(*selected, session), place, kColliderLead);
   }
   if (place == *goal_) goal_.reset();
   const char* const name = selected->group == "sphere" ? "origin" : selected->group == "plane" ? "point" : "position";

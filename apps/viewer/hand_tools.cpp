@@ -31,10 +31,14 @@ Handle GripOf(const Scene& scene, int index, int vertex, const Vec3& at) {
   return handle;
 }
 
+Vec3 Towards(const Vec3& from, const Vec3& to, double most) {
+  const Vec3 way = to - from;
+  const double length = Length(way);
+  return length > most ? from + way * (most / length) : to;
+}
+
 Vec3 LeadOf(const Handle& grip, const Vec3& at, const Vec3& hand) {
-  const Vec3 way = hand - at;
-  const double length = Length(way), most = kGripLead * grip.radius;
-  return length > most ? at + way * (most / length) : hand;
+  return Towards(at, hand, kGripLead * grip.radius);
 }
 
 Vec3 CarriedWay(int pin, const Vec3& way, std::span<const Vec3> positions, std::span<const Edge> springs,

@@ -13,6 +13,8 @@ namespace percale::viewer {
 
 /// A grip on a vertex of cloth `index` of the scene, which is at a point.
 Handle GripOf(const Scene& scene, int index, int vertex, const Vec3& at);
+/// `to`, or, where that is farther from `from` than `most` [m], what is so far on the way.
+Vec3 Towards(const Vec3& from, const Vec3& to, double most);
 /// The target of a grip that is to lead from where its vertex is to where the hand is: no farther ahead than it has
 /// strength for. A hand that has run away from the cloth while a frame took long, or to where pins do not let it, would
 /// tear at it without bounds.
