@@ -29,7 +29,7 @@ class BoxMap {
     return {members_.data() + first_[b], static_cast<std::size_t>(count_[b])};
   }
   /// The same as arrays: per bucket the index of its first member, and how many there are. Behind the
-  /// last one its first stands again, up to a multiple of kPadding members.
+  /// last one its first stands again, kPadding times.
   static constexpr int kPadding = 8;
   const std::int32_t* Members() const { return members_.data(); }
   const std::int32_t* First() const { return first_.data(); }

@@ -13,19 +13,14 @@ inline void StoreFloats(float* p, FloatPack a) {
 inline FloatPack AllFloats(float s) {
   return {_mm256_set1_ps(s)};
 }
-inline FloatPack operator+(FloatPack a, FloatPack b) {
-  return {_mm256_add_ps(a.v, b.v)};
-}
 inline FloatPack operator-(FloatPack a, FloatPack b) {
   return {_mm256_sub_ps(a.v, b.v)};
-}
-inline FloatPack FloatsOf(__m256d low, __m256d high) {
-  return {_mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low))};
 }
 /// How far eight numbers are before `origin`.
 inline FloatPack FloatsBefore(double origin, const double* x) {
   const __m256d o = _mm256_set1_pd(origin);
-  return FloatsOf(_mm256_sub_pd(o, _mm256_loadu_pd(x)), _mm256_sub_pd(o, _mm256_loadu_pd(x + 4)));
+  return {_mm256_set_m128(_mm256_cvtpd_ps(_mm256_sub_pd(o, _mm256_loadu_pd(x + 4))),
+                          _mm256_cvtpd_ps(_mm256_sub_pd(o, _mm256_loadu_pd(x))))};
 }
 struct FloatMask {
   __m256 v;

@@ -30,14 +30,14 @@ inline std::uint64_t ExactKey(const BoxKeyArgs& a, int p) {
   return key;
 }
 /// A side of a box, in whole units of places.
-inline double UnitsOf(const BoxKeyArgs& a, double longest, int axis) {
-  return Floor(a.boxSize[axis] / longest * (1 << kPlaceBits));
+inline double UnitsOf(const BoxKeyArgs& a, int axis) {
+  return Floor(a.boxSize[axis] / a.boxSize[2] * (1 << kPlaceBits));
 }
 /// Where it is within that box.
-inline std::uint64_t ExactPlace(const BoxKeyArgs& a, double longest, int p) {
+inline std::uint64_t ExactPlace(const BoxKeyArgs& a, int p) {
   std::uint64_t place = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = a.x[axis][p] / a.boxSize[axis], end = UnitsOf(a, longest, axis);
+    const double at = a.x[axis][p] / a.boxSize[axis], end = UnitsOf(a, axis);
     double units = (at - Floor(at)) * end;  // `end`, where the difference rounds to one
     units = units < end ? units : end - 1;
     units = units > 0 ? units : 0;  // too far out it may be no number
@@ -60,10 +60,8 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
   for (int axis = 0; axis < 3; ++axis) {
     perMetre[axis] = All(static_cast<double>(std::uint64_t{1} << kPartBits) / a.boxSize[axis]);
   }
-  double longest = 0;
-  for (const double size : a.boxSize) longest = size > longest ? size : longest;
   std::uint64_t sides = 0;  // of a box, in units
-  for (int axis = 0; axis < 3; ++axis) sides |= static_cast<std::uint64_t>(UnitsOf(a, longest, axis)) << 16 * axis;
+  for (int axis = 0; axis < 3; ++axis) sides |= static_cast<std::uint64_t>(UnitsOf(a, axis)) << 16 * axis;
   for (int begin = 0; begin < a.count; begin += kLanes) {
     std::uint64_t keys[kLanes];
     unsigned changes = 0, doubts = 0;  // a bit for each point whose key changed, or may have
@@ -87,8 +85,9 @@ std::int64_t BoxKeys(const BoxKeyArgs& a) {
     }
     for (; changes != 0; changes &= changes - 1) {
       const int lane = LowestBit(changes), p = begin + lane;
-      const std::uint64_t key = (doubts >> lane & 1) != 0 ? ExactKey(a, p) : keys[lane];
-      if ((doubts >> lane & 1) != 0) a.place[p] = ExactPlace(a, longest, p);
+      const bool doubtful = (doubts >> lane & 1) != 0;
+      const std::uint64_t key = doubtful ? ExactKey(a, p) : keys[lane];
+      if (doubtful) a.place[p] = ExactPlace(a, p);
       if (Wraps(a, p)) *a.wraps = 1;
       if (key == a.key[p]) continue;
       a.key[p] = key;
@@ -112,8 +111,11 @@ struct BucketPlaces {
   static constexpr int kMost = 64;  // members
   const std::int32_t* members;
   int count;
-  std::int32_t xy[kMost], z[kMost];                      // in whole blocks: what is behind the last is far from all
-  std::int32_t turnedXy[2 * kMost], turnedZ[2 * kMost];  // the same, but behind the last are the first once more
+  // Behind the last stand the first once more, and then what is far from all.
+  std::int32_t xy[2 * kMost], z[2 * kMost];
+
+  Places Block(int m) const { return LoadPlaces(xy + m, z + m); }
+  void PutBlock(int m, Places places) { StorePlaces(xy + m, z + m, places); }
 
   /// Returns false where no point pushes another, as is seen at first sight: then none moves.
   bool Take(const BucketArgs& a, const std::int32_t* bucket, int size, std::int32_t push);
@@ -132,15 +134,11 @@ inline bool BucketPlaces::Take(const BucketArgs& a, const std::int32_t* bucket, 
     least = Least(least, SquaredDistance(points, AllPlaces(a.place[members[kPlaceLanes]] | beyond)));
     if (Below(least, push) == 0) return false;
   }
-  StorePlaces(xy, z, points), StorePlaces(turnedXy, turnedZ, points);
+  PutBlock(0, points);
   int end = kPlaceLanes;
-  for (; end < count; end += kPlaceLanes) {
-    const Places more = gather(end);
-    StorePlaces(xy + end, z + end, more), StorePlaces(turnedXy + end, turnedZ + end, more);
-  }
-  for (int m = 0; m < end; m += kPlaceLanes) {
-    StorePlaces(turnedXy + count + m, turnedZ + count + m, LoadPlaces(xy + m, z + m));
-  }
+  for (; end < count; end += kPlaceLanes) PutBlock(end, gather(end));
+  // The last block first: it is read before others are put over its end.
+  for (int m = end - kPlaceLanes; m >= 0; m -= kPlaceLanes) PutBlock(count + m, Block(m));
   return true;
 }
 
@@ -150,19 +148,20 @@ struct NearPoints {
   std::uint64_t near[BucketPlaces::kMost];  // per member a bit for each other that is near it
   std::uint64_t todo = 0;                   // a bit for each that is near others, and did not move yet
 
+  /// Blocks are unrolled, by the bucket's number of them, since loops of many lengths would be foretold badly: a
+  /// bucket that has more than `blocks` is left to the next.
+  template <int blocks = 1>
   void Find(const BucketPlaces& bucket, Reach reach);
-
- private:
-  /// For buckets of so many blocks, which are unrolled: loops of many lengths would be foretold badly.
-  template <int blocks>
-  void FindIn(const BucketPlaces& bucket, Reach reach);
 };
 
 template <int blocks>
-inline void NearPoints::FindIn(const BucketPlaces& bucket, Reach reach) {
+inline void NearPoints::Find(const BucketPlaces& bucket, Reach reach) {
+  if constexpr (blocks < BucketPlaces::kMost / kPlaceLanes) {
+    if (bucket.count > blocks * kPlaceLanes) return Find<blocks + 1>(bucket, reach);
+  }
   const int count = bucket.count;
   Places places[blocks];
-  for (int b = 0; b < blocks; ++b) places[b] = LoadPlaces(bucket.xy + b * kPlaceLanes, bucket.z + b * kPlaceLanes);
+  for (int b = 0; b < blocks; ++b) places[b] = bucket.Block(b * kPlaceLanes);
 
   const std::uint64_t all = ~std::uint64_t{0} >> (BucketPlaces::kMost - count);
   std::uint64_t found = 0;
@@ -174,8 +173,7 @@ inline void NearPoints::FindIn(const BucketPlaces& bucket, Reach reach) {
       std::uint64_t bits = 0;
       for (int b = 0; b < blocks; ++b) {
         const int m = b * kPlaceLanes;
-        const Ints squares =
-            SquaredDistance(places[b], LoadPlaces(bucket.turnedXy + m + turn, bucket.turnedZ + m + turn));
+        const Ints squares = SquaredDistance(places[b], bucket.Block(m + turn));
         bits |= std::uint64_t{Below(squares, within)} << m;
         least = Least(least, squares);
       }
@@ -196,27 +194,6 @@ inline void NearPoints::FindIn(const BucketPlaces& bucket, Reach reach) {
       bits |= std::uint64_t{Below(SquaredDistance(point, places[b]), within)} << b * kPlaceLanes;
     }
     near[m] = bits & all & ~(std::uint64_t{1} << m);
-  }
-}
-
-inline void NearPoints::Find(const BucketPlaces& bucket, Reach reach) {
-  switch ((bucket.count - 1) / kPlaceLanes) {
-    case 0:
-      return FindIn<1>(bucket, reach);
-    case 1:
-      return FindIn<2>(bucket, reach);
-    case 2:
-      return FindIn<3>(bucket, reach);
-    case 3:
-      return FindIn<4>(bucket, reach);
-    case 4:
-      return FindIn<5>(bucket, reach);
-    case 5:
-      return FindIn<6>(bucket, reach);
-    case 6:
-      return FindIn<7>(bucket, reach);
-    default:
-      return FindIn<8>(bucket, reach);
   }
 }
 
@@ -297,7 +274,7 @@ struct PushLanes {
 inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
   // Lanes that have none left take a point that no other thread has: the first lane was filled first.
   const std::int32_t* members[kLanes];
-  std::uint64_t itself[kLanes], others[kLanes];  // bits
+  std::uint64_t itself[kLanes], others[kLanes], left[kLanes];  // bits
   std::int32_t point[kLanes];
   int most = 0, total = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -307,7 +284,7 @@ inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
     bucket.todo &= bucket.todo - 1;
     members[lane] = any ? bucket.members : buckets[0].members;
     itself[lane] = std::uint64_t{1} << m;
-    others[lane] = any ? bucket.near[m] : 0;
+    others[lane] = left[lane] = any ? bucket.near[m] : 0;
     point[lane] = members[lane][m];
     const int count = BitCount(others[lane]);
     most = count > most ? count : most;
@@ -318,8 +295,6 @@ inline std::int64_t PushLanes::Turn(const BucketArgs& a) {
   Pack3 sum = Zero3();
   Pack pushed = All(0);
   int same = 0;
-  std::uint64_t left[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) left[lane] = others[lane];
   for (int k = 0; k < most; ++k) {
     std::int32_t other[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {

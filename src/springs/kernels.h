@@ -113,7 +113,7 @@ inline constexpr double kPlaceError = 2.5;
 struct BoxKeyArgs {
   int firstPoint, count;
   const double* x[3];     ///< From the first of the points on.
-  double boxSize[3];      ///< [m]
+  double boxSize[3];      ///< [m]; none is longer than the third.
   std::uint64_t* key;     ///< In and out, from the first of the points on: three box indices of 21 bits each.
   std::uint64_t* place;   ///< Out, likewise: where the points are in their boxes, from the lower end of each axis on,
                           ///< in 2^-kPlaceBits of the longest side of a box; 16 bits each for x, y, z and zero.
@@ -126,8 +126,7 @@ struct BucketArgs {
   int bucketBegin, bucketEnd;
   const std::int32_t* first;    ///< Per bucket: index of its first member.
   const std::int32_t* count;    ///< Per bucket: how many there are.
-  const std::int32_t* members;  ///< Indices into x, ascending within a bucket. Behind them stand others, up to a
-                                ///< multiple of 8 and one more.
+  const std::int32_t* members;  ///< Indices into x, ascending within a bucket. Behind them stand 8 others.
   double* x[3];                 ///< In and out.
   const std::uint8_t* fixed;    ///< Per point: 1 for pins.
   const double* thickness;      ///< Per point [m].

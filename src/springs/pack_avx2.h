@@ -86,9 +86,6 @@ inline Words AllWords(std::uint64_t s) {
 inline Words WordsOf(Pack a) {
   return {_mm256_castpd_si256(a.v)};
 }
-inline Words operator+(Words a, Words b) {
-  return {_mm256_add_epi64(a.v, b.v)};
-}
 inline Words operator&(Words a, Words b) {
   return {_mm256_and_si256(a.v, b.v)};
 }

@@ -88,9 +88,6 @@ inline Words AllWords(std::uint64_t s) {
 inline Words WordsOf(Pack a) {
   return {_mm512_castpd_si512(a.v)};
 }
-inline Words operator+(Words a, Words b) {
-  return {_mm512_add_epi64(a.v, b.v)};
-}
 inline Words operator&(Words a, Words b) {
   return {_mm512_and_si512(a.v, b.v)};
 }
@@ -108,7 +105,6 @@ template <int bits>
 inline Words Up(Words a) {
   return {_mm512_slli_epi64(a.v, bits)};
 }
-/// One bit per lane.
 /// Bits 14 to 29 of x, y and z, side by side from the lowest bit on, and above them the two highest of x.
 inline Words Quarters(Words x, Words y, Words z) {
   const __m512i xy = _mm512_mask_blend_epi16(0x22222222, _mm512_srli_epi64(x.v, 14), _mm512_slli_epi64(y.v, 2));
@@ -123,6 +119,7 @@ inline Words ExtremeQuarters(Words a) {
   const __m512i next = _mm512_sub_epi16(a.v, _mm512_set1_epi16(-1));
   return {_mm512_movm_epi16(_mm512_cmple_epu16_mask(next, _mm512_set1_epi16(1)))};
 }
+/// One bit per lane.
 inline unsigned Differ(Words a, Words b) {
   return _mm512_cmpneq_epi64_mask(a.v, b.v);
 }

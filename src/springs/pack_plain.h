@@ -94,9 +94,6 @@ template <class F>
 inline Words EachWord(F f) {
   return {{f(0), f(1), f(2), f(3)}};
 }
-inline Words operator+(Words a, Words b) {
-  return EachWord([&](int i) { return a.v[i] + b.v[i]; });
-}
 inline Words operator&(Words a, Words b) {
   return EachWord([&](int i) { return a.v[i] & b.v[i]; });
 }
@@ -166,9 +163,6 @@ inline void StoreFloats(float* p, FloatPack a) {
 }
 inline FloatPack AllFloats(float s) {
   return EachFloat([&](int) { return s; });
-}
-inline FloatPack operator+(FloatPack a, FloatPack b) {
-  return EachFloat([&](int i) { return a.v[i] + b.v[i]; });
 }
 inline FloatPack operator-(FloatPack a, FloatPack b) {
   return EachFloat([&](int i) { return a.v[i] - b.v[i]; });
